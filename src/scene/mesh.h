@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace hemirad {
+
+/// A planar convex quad or triangle on which radiosity is constant (sec. 1.2).
+struct Patch {
+    /// Counter-clockwise from the front, indices into Mesh::vertices. A triangle repeats its last
+    /// corner: corners[3] == corners[2].
+    std::array<std::uint32_t, 4> corners;
+    std::uint32_t surface;
+
+    bool is_triangle() const { return corners[3] == corners[2]; }
+};
+
+/// Coplanar, connected faces of one object and one material, cut into a regular grid.
+/// A point of the surface is origin + s * u_axis + t * v_axis with 0 <= s <= columns * cell_size.x
+/// and 0 <= t <= rows * cell_size.y; (u_axis, v_axis, normal) is orthonormal and right-handed.
+struct Surface {
+    std::uint32_t object = 0;
+    std::uint32_t material = 0;  ///< index into Mesh::materials
+    bool is_back = false;        ///< the reverse of an open sheet or of a double-sided material
+    bool has_chart = true;       ///< false for backs that only block and absorb
+    glm::dvec3 origin{}, u_axis{}, v_axis{}, normal{};
+    glm::dvec2 cell_size{};
+    std::uint32_t columns = 1, rows = 1;
+    std::uint32_t first_patch = 0, patch_count = 0;  ///< its patches are consecutive
+    /// For each of its patches the grid cell it lies in, row * columns + column. A cell that the
+    /// outline cuts holds several patches, one outside the outline none.
+    std::vector<std::uint32_t> cell_of_patch;
+};
+
+/// How much of an input face ended up in which patch.
+struct Fragment {
+    std::uint32_t face;
+    std::uint32_t patch;
+    double area;  ///< m^2
+};
+
+/// Connected faces (over shared edges), as `info` lists them.
+struct Part {
+    std::vector<std::uint32_t> objects;  ///< names of the objects it touches
+    std::uint32_t face_count = 0;
+    bool closed = false;             ///< every edge shared by two faces of opposite direction
+    bool doubled = false;            ///< holds faces of double-sided materials
+    std::uint32_t back_patches = 0;  ///< backs that --backfaces gave it
+};
+
+struct Mesh {
+    std::vector<glm::dvec3> vertices;  ///< world space, m; corners shared by neighbours are one
+    std::vector<Patch> patches;
+    std::vector<Surface> surfaces;
+    std::vector<Material> materials;  ///< the scene's, reflectance limited, then one black absorber
+    std::vector<Fragment> fragments;  ///< of fronts only, sorted by face, then patch
+    std::vector<Part> parts;
+    std::vector<std::string> bands;
+    std::vector<std::string> objects;
+    std::uint32_t face_count = 0;  ///< of the scene, dropped ones included
+    std::uint32_t dropped_degenerate = 0, dropped_duplicate = 0;
+    bool closed = false;  ///< every part is closed: no proxel can escape
+    std::vector<std::string> warnings;
+
+    double area(const Patch& patch) const;            ///< m^2
+    glm::dvec3 normal(const Patch& patch) const;      ///< unit, towards the front
+    glm::dvec3 centroid(const Patch& patch) const;    ///< of its area
+};
+
+enum class Backfaces { automatic, block, cull };
+
+struct MeshSettings {
+    double patch_size = 0;  ///< m; 0: from the scene's extent; infinity: a patch a face, uncut
+    Backfaces backfaces = Backfaces::automatic;
+    double max_reflectance = 0.98;
+};
+
+/// Cuts a scene into patches: welds, drops degenerate and duplicate faces (with warnings that give
+/// coordinates), finds surfaces, lays the grid, adds the backs that `settings.backfaces` asks for.
+/// Throws InputError where nothing is left.
+Mesh build_mesh(const Scene& scene, const MeshSettings& settings);
+
+/// The patch size that `--patch-size` defaults to, m.
+double default_patch_size(const Scene& scene);
+
+}  // namespace hemirad

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+namespace hemirad {
+
+/// A diffuse material. Both spectra hold one value a band of the scene.
+struct Material {
+    std::string name;
+    std::vector<double> reflectance;  ///< in [0, 1]
+    std::vector<double> emission;     ///< radiance, W/(m^2 sr), >= 0
+    bool double_sided = false;        ///< reflects and emits on both sides
+};
+
+/// An input polygon; counter-clockwise order is the front.
+struct Face {
+    std::vector<std::uint32_t> vertices;  ///< three or more indices into Scene::positions
+    std::uint32_t material = 0;
+    std::uint32_t object = 0;
+};
+
+/// What a file says, in world space and metres, nothing repaired yet.
+/// Readers promise: finite positions, indices in range, finite spectra within their limits.
+struct Scene {
+    std::string file;                ///< name without folder, for messages
+    std::vector<std::string> bands;  ///< {"R", "G", "B"} unless the file names others
+    std::vector<glm::dvec3> positions;
+    std::vector<Face> faces;  ///< in file order
+    std::vector<Material> materials;
+    std::vector<std::string> objects;   ///< name of each `o`/`g` or glTF node
+    std::vector<std::string> warnings;  ///< one line each, for people
+};
+
+}  // namespace hemirad

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hemirad {
+
+/// Energy of one band, W: emitted = absorbed + escaped + unshot.
+struct Ledger {
+    double emitted = 0, absorbed = 0, escaped = 0, unshot = 0;
+    /// |emitted - absorbed - escaped - unshot| / emitted; 0 where nothing is emitted.
+    double residual() const;
+};
+
+/// Radiosity of every patch of a mesh, finished or so far.
+struct Solution {
+    std::vector<std::string> bands;                ///< as in the mesh
+    std::vector<std::vector<double>> irradiance;   ///< [band][patch], W/m^2
+    std::vector<std::vector<double>> radiosity;    ///< [band][patch], W/m^2, own emission included
+    std::vector<Ledger> ledger;                    ///< [band]
+    std::uint64_t shots = 0;
+    double unshot_fraction = 0;  ///< unshot / emitted flux, the largest of the bands
+    bool converged = false;      ///< false: stopped by a limit
+};
+
+}  // namespace hemirad
