@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lightmap/lightmap.h"
+#include "solver/solution.h"
+
+namespace hemirad {
+
+struct Attribute {
+    std::string name;  ///< stored as `hemirad.NAME`
+    std::variant<std::string, double> value;
+};
+
+/// What the solution itself says: quantity, unit, shots, unshot_fraction, ledger_residual (the
+/// largest of the bands), converged. The caller adds version, scene, resolution and settings.
+std::vector<Attribute> describe(const Solution& solution, Quantity quantity);
+
+enum class PixelType { float32, half };
+
+/// Scanline OpenEXR, ZIP: a channel a band plus `coverage`, no alpha. The same arguments give the
+/// same bytes. Throws OutputError, also where a value is beyond the range of half, and InputError
+/// where a band's name cannot be a channel's.
+void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
+               const std::vector<Attribute>& attributes, PixelType type = PixelType::float32);
+
+}  // namespace hemirad
