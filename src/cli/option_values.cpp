@@ -1,0 +1,76 @@
+#include "cli/option_values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "cli/text.h"
+#include "errors.h"
+
+namespace hemirad {
+namespace {
+
+template <typename Number>
+std::optional<Number> parsed(std::string_view text) {
+    Number number{};
+    const auto* const end = text.data() + text.size();
+    const auto [rest, fault] = std::from_chars(text.data(), end, number);
+    if (fault != std::errc() || rest != end) return {};
+    return number;
+}
+
+}  // namespace
+
+void reject(const OptionValue& value, std::string_view accepted) {
+    throw InputError("hemirad: " + std::string(value.option) + " \"" + escaped(value.text) +
+                     "\": expected " + std::string(accepted));
+}
+
+std::uint64_t whole_number(const OptionValue& value, std::uint64_t lowest, std::uint64_t highest) {
+    const auto number = parsed<std::uint64_t>(value.text);
+    if (!number || *number < lowest || *number > highest)
+        reject(value,
+               "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+    return *number;
+}
+
+double positive_number(const OptionValue& value) {
+    const auto number = parsed<double>(value.text);
+    if (!number || !std::isfinite(*number) || *number <= 0) reject(value, "a number above 0");
+    return *number;
+}
+
+double positive_or_infinite(const OptionValue& value) {
+    const auto number = parsed<double>(value.text);
+    if (!number || std::isnan(*number) || *number <= 0) reject(value, "a number above 0, or inf");
+    return *number;
+}
+
+double fraction(const OptionValue& value) {
+    const auto number = parsed<double>(value.text);
+    if (!number || !(*number > 0 && *number < 1)) reject(value, "a number above 0 and below 1");
+    return *number;
+}
+
+Extent extent(const OptionValue& value) {
+    constexpr std::uint32_t kLongestSide = 8192;
+    const auto cross = std::min(value.text.find('x'), value.text.size());
+    const auto width = parsed<std::uint32_t>(value.text.substr(0, cross));
+    const auto height =
+        parsed<std::uint32_t>(value.text.substr(std::min(cross + 1, value.text.size())));
+    const auto fits = [](const auto& side) { return side && *side >= 1 && *side <= kLongestSide; };
+    if (!fits(width) || !fits(height)) reject(value, "WIDTHxHEIGHT, such as 32x32");
+    return {*width, *height};
+}
+
+std::size_t one_of(const OptionValue& value, const std::vector<std::string_view>& words) {
+    const auto found = std::find(words.begin(), words.end(), value.text);
+    if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    std::string list(words.front());
+    for (std::size_t i = 1; i < words.size(); ++i)
+        list += (i + 1 == words.size() ? " or " : ", ") + std::string(words[i]);
+    reject(value, list);
+}
+
+}  // namespace hemirad

@@ -1,0 +1,68 @@
+#include "cli/text.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace hemirad {
+namespace {
+
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), format, values...);
+    return text.data();
+}
+
+std::string escaped_character(unsigned char c) {
+    if (c == '\n') return "\\n";
+    if (c == '\t') return "\\t";
+    return formatted("\\x%02x", c);
+}
+
+/// U+0080 to U+009F, which terminals obey like the ASCII ones, in UTF-8.
+bool starts_c1_control(std::string_view text) {
+    return text.size() >= 2 && text[0] == '\xc2' && static_cast<unsigned char>(text[1]) < 0xa0;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto c = static_cast<unsigned char>(text[i]);
+        if (starts_c1_control(text.substr(i))) {
+            result += escaped_character(c) + escaped_character(text[++i]);
+        } else if (c < 0x20 || c == 0x7f) {
+            result += escaped_character(c);
+        } else {
+            result += text[i];
+        }
+    }
+    return result;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+    constexpr std::array kUnits{"B", "KiB", "MiB", "GiB", "TiB"};
+    double amount = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    for (; amount >= 1024 && unit + 1 < kUnits.size(); ++unit) amount /= 1024;
+    return formatted(unit == 0 || amount >= 100 ? "%.0f %s" : "%.1f %s", amount, kUnits[unit]);
+}
+
+std::string duration_text(double seconds) {
+    if (seconds < 1) return formatted("%.0f ms", seconds * 1e3);
+    if (seconds < 60) return formatted("%.1f s", seconds);
+    const auto whole = std::llround(seconds);
+    if (whole < 3600) return formatted("%lld min %lld s", whole / 60, whole % 60);
+    return formatted("%lld h %lld min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural) {
+    const auto noun = count == 1       ? std::string(singular)
+                      : plural.empty() ? std::string(singular) + "s"
+                                       : std::string(plural);
+    return std::to_string(count) + " " + noun;
+}
+
+}  // namespace hemirad
