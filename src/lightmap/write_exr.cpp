@@ -1,0 +1,167 @@
+#include "lightmap/write_exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ios>
+#include <set>
+
+#include "errors.h"
+#include "lightmap/atomic_file.h"
+
+namespace hemirad {
+namespace {
+
+constexpr const char* kCoverage = "coverage";
+
+/// Single-threaded, so that the order of the lines in the file is always the same.
+constexpr int kExrThreads = 0;
+
+class ExrStream : public Imf::OStream {
+  public:
+    ExrStream(std::ostream& stream, const std::string& name)
+        : Imf::OStream(name.c_str()), stream_(stream) {}
+
+    void write(const char bytes[], int count) override {
+        stream_.write(bytes, count);
+        require(stream_.good());
+    }
+    std::uint64_t tellp() override {
+        const auto position = stream_.tellp();
+        require(position >= 0);
+        return static_cast<std::uint64_t>(position);
+    }
+    void seekp(std::uint64_t position) override {
+        stream_.seekp(static_cast<std::streamoff>(position));
+        require(stream_.good());
+    }
+
+  private:
+    void require(bool done) {
+        if (done) return;
+        stream_.setstate(std::ios::badbit);
+        throw std::ios_base::failure("write failed");
+    }
+    std::ostream& stream_;
+};
+
+/// Ledger::residual() of the worst band, computed here because the solver's library lies beside
+/// this one, not below it.
+double largest_residual(const Solution& solution) {
+    double largest = 0.0;
+    for (const Ledger& band : solution.ledger) {
+        if (band.emitted == 0.0) continue;
+        const double lost = band.emitted - band.absorbed - band.escaped - band.unshot;
+        largest = std::max(largest, std::abs(lost) / band.emitted);
+    }
+    return largest;
+}
+
+void require_channel_names(const std::vector<std::string>& bands) {
+    std::set<std::string> taken{kCoverage};
+    for (const std::string& band : bands) {
+        if (band.empty()) throw InputError("band \"\": an EXR channel needs a name");
+        if (!taken.insert(band).second) {
+            throw InputError("band \"" + band + "\": the EXR already has a channel of this name");
+        }
+    }
+}
+
+void insert(Imf::Header& header, const Attribute& attribute) {
+    const std::string name = "hemirad." + attribute.name;
+    if (const auto* text = std::get_if<std::string>(&attribute.value)) {
+        header.insert(name, Imf::StringAttribute(*text));
+    } else {
+        header.insert(name, Imf::DoubleAttribute(std::get<double>(attribute.value)));
+    }
+}
+
+Imf::PixelType imf_type(PixelType type) { return type == PixelType::half ? Imf::HALF : Imf::FLOAT; }
+
+Imf::Header header_of(const Lightmap& lightmap, const std::vector<Attribute>& attributes,
+                      PixelType type) {
+    Imf::Header header(static_cast<int>(lightmap.width), static_cast<int>(lightmap.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const std::string& band : lightmap.bands) {
+        header.channels().insert(band, Imf::Channel(imf_type(type)));
+    }
+    header.channels().insert(kCoverage, Imf::Channel(imf_type(type)));
+    for (const Attribute& attribute : attributes) insert(header, attribute);
+    return header;
+}
+
+std::vector<half> halves(const std::string& file, const std::string& channel,
+                         const std::vector<float>& values) {
+    std::vector<half> rounded(values.begin(), values.end());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (rounded[i].isFinite()) continue;
+        throw OutputError(file + ": channel " + channel + ": " + std::to_string(values[i]) +
+                          " is beyond the range of half; write float");
+    }
+    return rounded;
+}
+
+/// OpenEXR reads from the slices of a file it writes, but takes them as char*.
+template <typename T>
+Imf::Slice slice_of(const std::vector<T>& texels, std::uint32_t width, Imf::PixelType type) {
+    char* first = const_cast<char*>(reinterpret_cast<const char*>(texels.data()));
+    return {type, first, sizeof(T), sizeof(T) * width};
+}
+
+/// Half channels must outlive the frame buffer that points to them.
+struct Frame {
+    Imf::FrameBuffer buffer;
+    std::vector<std::vector<half>> half_channels;
+};
+
+Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type) {
+    Frame frame;
+    const auto add = [&](const std::string& channel, const std::vector<float>& values) {
+        if (type == PixelType::float32) {
+            frame.buffer.insert(channel, slice_of(values, lightmap.width, Imf::FLOAT));
+            return;
+        }
+        frame.half_channels.push_back(halves(file, channel, values));
+        frame.buffer.insert(channel,
+                            slice_of(frame.half_channels.back(), lightmap.width, Imf::HALF));
+    };
+    for (std::size_t band = 0; band < lightmap.bands.size(); ++band) {
+        add(lightmap.bands[band], lightmap.values[band]);
+    }
+    add(kCoverage, lightmap.coverage);
+    return frame;
+}
+
+}  // namespace
+
+std::vector<Attribute> describe(const Solution& solution, Quantity quantity) {
+    return {{"quantity", quantity == Quantity::irradiance ? "irradiance" : "radiosity"},
+            {"unit", "W/m^2"},
+            {"shots", static_cast<double>(solution.shots)},
+            {"unshot_fraction", solution.unshot_fraction},
+            {"ledger_residual", largest_residual(solution)},
+            {"converged", solution.converged ? "true" : "false"}};
+}
+
+void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
+               const std::vector<Attribute>& attributes, PixelType type) {
+    require_channel_names(lightmap.bands);
+    const Imf::Header header = header_of(lightmap, attributes, type);
+    const Frame frame = frame_of(path.string(), lightmap, type);
+    write_atomically(path, [&](std::ostream& stream) {
+        ExrStream exr_stream(stream, path.string());
+        Imf::OutputFile file(exr_stream, header, kExrThreads);
+        file.setFrameBuffer(frame.buffer);
+        file.writePixels(static_cast<int>(lightmap.height));
+    });
+}
+
+}  // namespace hemirad

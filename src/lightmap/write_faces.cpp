@@ -1,0 +1,112 @@
+#include "lightmap/write_faces.h"
+
+#include <array>
+#include <charconv>
+#include <glm/geometric.hpp>
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lightmap/atomic_file.h"
+
+namespace hemirad {
+namespace {
+
+constexpr int kDigits = 9;
+
+/// RFC 4180.
+std::string csv_field(std::string_view text) {
+    if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+    std::string field = "\"";
+    for (const char c : text) field.append(c == '"' ? 2 : 1, c);
+    return field + '"';
+}
+
+/// Like %.9g, whatever the locale.
+std::string decimal(double value) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                   std::chars_format::general, kDigits);
+    return {text.data(), end.ptr};
+}
+
+struct Shape {
+    double area = 0.0;
+    glm::dvec3 centroid{};
+};
+
+/// Fans of triangles, signed by their direction, so that concave polygons count right.
+Shape shape_of(const Scene& scene, const Face& face) {
+    const glm::dvec3 apex = scene.positions[face.vertices[0]];
+    const auto corner = [&](std::size_t i) { return scene.positions[face.vertices[i]] - apex; };
+    glm::dvec3 doubled{};
+    for (std::size_t i = 2; i < face.vertices.size(); ++i) {
+        doubled += glm::cross(corner(i - 1), corner(i));
+    }
+    const double length = glm::length(doubled);
+    glm::dvec3 moment{};
+    for (std::size_t i = 2; i < face.vertices.size(); ++i) {
+        const double part = glm::dot(glm::cross(corner(i - 1), corner(i)), doubled / length);
+        moment += part * (corner(i - 1) + corner(i)) / 3.0;
+    }
+    return {length / 2.0, apex + moment / length};
+}
+
+double area_mean(std::span<const Fragment> fragments, const std::vector<double>& patch_values) {
+    double area = 0.0, sum = 0.0;
+    for (const Fragment& fragment : fragments) {
+        area += fragment.area;
+        sum += fragment.area * patch_values[fragment.patch];
+    }
+    return sum / area;
+}
+
+void write_header(std::ostream& stream, const std::vector<std::string>& bands) {
+    stream << "face,object,material,area,cx,cy,cz";
+    for (const char* quantity : {"irradiance.", "radiosity."}) {
+        for (const std::string& band : bands) stream << ',' << csv_field(quantity + band);
+    }
+    stream << '\n';
+}
+
+void write_values(std::ostream& stream, const Shape& shape, std::span<const Fragment> fragments,
+                  const Solution& solution) {
+    const glm::dvec3& c = shape.centroid;
+    for (const double value : {shape.area, c.x, c.y, c.z}) stream << ',' << decimal(value);
+    for (const auto* quantity : {&solution.irradiance, &solution.radiosity}) {
+        for (const auto& band : *quantity) stream << ',' << decimal(area_mean(fragments, band));
+    }
+}
+
+void write_row(std::ostream& stream, const Scene& scene, std::size_t index,
+               std::span<const Fragment> fragments, const Solution& solution) {
+    const Face& face = scene.faces[index];
+    stream << index << ',' << csv_field(scene.objects[face.object]) << ','
+           << csv_field(scene.materials[face.material].name);
+    if (fragments.empty()) {
+        stream << std::string(4 + 2 * solution.bands.size(), ',');
+    } else {
+        write_values(stream, shape_of(scene, face), fragments, solution);
+    }
+    stream << '\n';
+}
+
+}  // namespace
+
+void write_faces(const std::filesystem::path& path, const Scene& scene, const Mesh& mesh,
+                 const Solution& solution) {
+    write_atomically(path, [&](std::ostream& stream) {
+        write_header(stream, solution.bands);
+        std::size_t first = 0;
+        for (std::size_t face = 0; face < scene.faces.size(); ++face) {
+            std::size_t last = first;
+            while (last < mesh.fragments.size() && mesh.fragments[last].face == face) ++last;
+            write_row(stream, scene, face, std::span(mesh.fragments).subspan(first, last - first),
+                      solution);
+            first = last;
+        }
+    });
+}
+
+}  // namespace hemirad
