@@ -1,0 +1,67 @@
+// Sec. 1.5.2: the coordinate system of the source patch, its origin in one of `samples` x
+// `samples` equal parts of it. A hemisphere at a patch's centre gives a point-to-area factor;
+// several on the patch approach the area-to-area factor.
+#include "shared.h"
+
+#pragma OPENCL FP_CONTRACT OFF
+
+static float3 corner_of(const __global float* corners, int stride, int patch, int k) {
+    const __global float* at = corners + 3 * k * stride + patch;
+    return (float3)(at[0], at[stride], at[2 * stride]);
+}
+
+// Sample `part` of a triangle: the centroid of one of its samples^2 congruent parts, in rows of
+// 1, 3, 5, ... from corner a.
+static float3 triangle_sample(float3 a, float3 b, float3 c, int part, int samples) {
+    int row = 0;
+    while ((row + 1) * (row + 1) <= part) ++row;
+    const int along = part - row * row;
+    // Centroids in thirds of a step: upright parts (even `along`) and inverted ones alternate.
+    const float down = (row + ((along & 1) != 0 ? 1.0f / 3.0f : 2.0f / 3.0f)) / samples;
+    const float across = (along / 2 + ((along & 1) != 0 ? 2.0f / 3.0f : 1.0f / 3.0f)) / samples;
+    return a + (b - a) * (down - across) + (c - a) * across;
+}
+
+static float3 quad_point(const float3* corner, float s, float t) {
+    const float3 low = corner[0] + (corner[1] - corner[0]) * s;
+    const float3 high = corner[3] + (corner[2] - corner[3]) * s;
+    return low + (high - low) * t;
+}
+
+// Centroid of the quad's part (s..s+step, t..t+step): that of its two triangles by their areas.
+static float3 quad_sample(const float3* corner, int part, int samples) {
+    const float step = 1.0f / samples;
+    const float s = (part % samples) * step, t = (part / samples) * step;
+    const float3 a = quad_point(corner, s, t), b = quad_point(corner, s + step, t),
+                 c = quad_point(corner, s + step, t + step), d = quad_point(corner, s, t + step);
+    const float lower = length(cross(b - a, c - a)), upper = length(cross(c - a, d - a));
+    const float share = lower + upper > 0.0f ? lower / (lower + upper) : 0.5f;
+    return ((a + c) + (b * share + d * (1.0f - share))) * (1.0f / 3.0f);
+}
+
+static void store_axis(float3 axis, __global float* to) {
+    to[0] = axis.x;
+    to[1] = axis.y;
+    to[2] = axis.z;
+}
+
+__kernel void aim_hemisphere(__global Shot* shot, const __global float* corners,
+                             const __global float* normals, int stride, int samples, int part) {
+    if (shot->status != kRunning) return;
+    const int patch = shot->patch;
+    float3 corner[4];
+    for (int k = 0; k < 4; ++k)
+        corner[k] = corner_of(corners, stride, patch, min(k, CORNERS - 1));
+    const bool triangle = all(corner[3] == corner[2]);
+    store_axis(triangle ? triangle_sample(corner[0], corner[1], corner[2], part, samples)
+                        : quad_sample(corner, part, samples),
+               shot->origin);
+
+    const float3 normal =
+        (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
+    const float3 edge = corner[1] - corner[0];
+    const float3 u_axis = normalize(edge - normal * dot(edge, normal));
+    store_axis(u_axis, shot->u_axis);
+    store_axis(cross(normal, u_axis), shot->v_axis);
+    store_axis(normal, shot->normal);
+}

@@ -1,0 +1,25 @@
+// Turns counts into the places where lists begin: exclusive prefix sum, in place, by one array.
+// More entries than `capacity` halt the shot; the host then enlarges the buffer and repeats it.
+#include "shared.h"
+
+__kernel void prefix_sum(__global Shot* shot, __global int* values, int count, uint capacity) {
+    __local uint sums[PREFIX_PES];
+    if (shot->status != kRunning) return;
+    const int pe = get_local_id(0);
+    const int share = (count + PREFIX_PES - 1) / PREFIX_PES;
+    const int first = min(pe * share, count), end = min(first + share, count);
+    uint sum = 0;
+    for (int i = first; i < end; ++i) sum += values[i];
+    sums[pe] = sum;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    uint before = 0;
+    for (int other = 0; other < pe; ++other) before += sums[other];
+    for (int i = first; i < end; ++i) {
+        const int value = values[i];
+        values[i] = before;
+        before += value;
+    }
+    if (pe != PREFIX_PES - 1) return;
+    shot->bin_entries = before;
+    if (before > capacity) shot->status = kBinsFull;
+}

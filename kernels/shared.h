@@ -1,0 +1,76 @@
+// Structs and constants that host and device share. Only int, uint and float, so that both
+// compilers lay them out alike; the host checks the sizes.
+#ifndef HEMIRAD_SHARED_H
+#define HEMIRAD_SHARED_H
+
+#ifndef __OPENCL_VERSION__
+#include <cstdint>
+namespace hemirad::device {
+using std::int32_t;
+using std::uint32_t;
+#else
+typedef int int32_t;
+typedef uint uint32_t;
+#endif
+
+// The scene is normalised into [-1, 1]. kEdgeMargin is how far a vertex, a ray and a plane
+// together may be off by single precision, as a length: a vertex rounded to float is displaced by
+// up to sqrt(3) * 2^-25; its difference to the shooter, its rotation and the cross product of an
+// edge, over distances up to 2 sqrt(3), add at most 12 roundings of 2^-24 * 3.5, in practice a
+// quarter of that. Every test of an edge, a facing or a horizon grants this margin, so no proxel
+// is lost between neighbours; what two patches then both claim goes to the nearer one.
+#define kEdgeMargin 7.5e-7f
+// A patch is seen only if the shooter lies in front of its plane, and it in front of the
+// shooter's, by more than that: below, nothing but rounding tells front from back. Half of the
+// margin of the edges, so that neighbours cover what is dropped here.
+#define kPlaneMargin 3.5e-7f
+
+// What update_radiosity and choose_shooter add up at a time. Fixed, so that sums of floats have
+// one order whatever the PE array.
+#define kReduceBlock 64
+
+#define kBroadcastBatch 64  // patches whose parameters an array takes at once (sec. 1.5.3)
+
+#define kRunning 0
+#define kConverged 1
+#define kBinsFull 2  // the lists of the tiles outgrew their buffer; the host enlarges it
+#define kExhausted 3  // nothing is left to shoot
+
+// What the PEs know of the shooting patch, and the host of the progress.
+typedef struct {
+    float origin[3];  // one of the shooter's hemispheres, normalised scene units
+    float u_axis[3], v_axis[3], normal[3];
+    int32_t patch;
+    int32_t status;
+    uint32_t shots;
+    uint32_t bin_entries;  // patches in the lists of all tiles
+    float unshot_fraction;    // largest of the bands
+    uint32_t least_proxels, most_proxels;  // owned and escaped, of all shots: closure
+    uint32_t escaped_proxels;              // of the last shot
+} Shot;
+
+// Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
+// An edge is (A, B, C) of eq. 1.2, of unit moment: its value is a length, positive inside.
+// depth is (A", B", C") of app. A. columns and rows are first | last << 16, of proxels.
+typedef struct {
+    float edge[4][3];
+    float depth[3];
+    int32_t patch;
+    uint32_t columns, rows;
+} Projection;
+
+// The most energetic patch of kReduceBlock patches, and the proxels they own in a shot.
+typedef struct {
+    float energy;  // unshot flux over the bands' weights
+    int32_t patch;
+    uint32_t proxels;
+} BlockSummary;
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(BlockSummary) == 12);
+static_assert(sizeof(Shot) == 80);
+static_assert(sizeof(Projection) == 72);
+}  // namespace hemirad::device
+#endif
+
+#endif

@@ -1,0 +1,69 @@
+// Sec. 1.5.4: every patch adds the flux that its form factor brings it, by the reciprocity of
+// eq. 1.1: F_ji B_i A_j = F_ij A_i B_i, so fluxes need no areas. Each PE then reduces the unshot
+// flux of its blocks, the first level of the choice of the most energetic patch.
+// received, received_rest, unshot, reflectance: [band][patch]; flux in normalised units.
+#include "compensated.clh"
+#include "shared.h"
+
+#define ACCUMULATORS (16 / LANES)  // sixteen sums whatever LANES, so that their order is one
+
+static void shoot_at(const __global Shot* shot, const __global float* shot_flux, int stride,
+                     int patch, real_v form_factor, __global float* received,
+                     __global float* received_rest, __global float* unshot,
+                     const __global float* reflectance) {
+    const int_v is_shooter = (patch + LANE_INDEX) == shot->patch ? (int_v)-1 : (int_v)0;
+    for (int band = 0; band < BANDS; ++band) {
+        const int at = band * stride + patch;
+        const real_v flux = form_factor * shot_flux[band];
+        real_v sum = load_v(at, received), rest = load_v(at, received_rest);
+        add_compensated(&sum, &rest, flux);
+        store_v(sum, at, received);
+        store_v(rest, at, received_rest);
+        const real_v left = choose_v(is_shooter, (real_v)0.0f, load_v(at, unshot));
+        store_v(fma(load_v(at, reflectance), flux, left), at, unshot);
+    }
+}
+
+__kernel void update_radiosity(__global Shot* shot, const __global float* shot_flux,
+                               __global int* proxel_count, float per_proxel, int stride,
+                               __global float* received, __global float* received_rest,
+                               __global float* unshot, const __global float* reflectance,
+                               const __global float* band_weight,
+                               __global BlockSummary* summaries, __global float* block_unshot) {
+    if (shot->status != kRunning) return;
+    const int pe = get_global_id(0), pe_count = get_global_size(0);
+    for (int block = pe; block < stride / kReduceBlock; block += pe_count) {
+        BlockSummary summary = {-1.0f, 0, 0u};
+        real_v sums[BANDS][ACCUMULATORS];
+        for (int band = 0; band < BANDS; ++band)
+            for (int a = 0; a < ACCUMULATORS; ++a) sums[band][a] = (real_v)0.0f;
+        for (int step = 0; step < kReduceBlock / LANES; ++step) {
+            const int patch = block * kReduceBlock + step * LANES;
+            const int_v counts = load_v(patch, proxel_count);
+            if (any_v(counts != 0)) {
+                store_v((int_v)0, patch, proxel_count);
+                for (int lane = 0; lane < LANES; ++lane)
+                    summary.proxels += int_lane_of(counts, lane);
+            }
+            shoot_at(shot, shot_flux, stride, patch, to_real_v(counts) * per_proxel, received,
+                     received_rest, unshot, reflectance);
+            real_v energy = (real_v)0.0f;
+            for (int band = 0; band < BANDS; ++band) {
+                const real_v left = load_v(band * stride + patch, unshot);
+                energy = fma((real_v)band_weight[band], left, energy);
+                sums[band][step % ACCUMULATORS] += left;
+            }
+            for (int lane = 0; lane < LANES; ++lane)
+                if (lane_of(energy, lane) > summary.most) {
+                    summary.most = lane_of(energy, lane);
+                    summary.patch = patch + lane;
+                }
+        }
+        summaries[block] = summary;
+        for (int band = 0; band < BANDS; ++band) {
+            float total = 0.0f;
+            for (int a = 0; a < 16; ++a) total += lane_of(sums[band][a / LANES], a % LANES);
+            block_unshot[block * BANDS + band] = total;
+        }
+    }
+}

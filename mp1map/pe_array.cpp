@@ -1,0 +1,66 @@
+#include "mp1map/pe_array.h"
+
+#include <algorithm>
+
+namespace mp1map {
+namespace {
+
+constexpr std::uint32_t kCpuTile = 64;  // 32 KiB of depth and owner: fits a first-level cache
+constexpr std::uint32_t kArraysPerUnit = 4;  // enough to even out uneven stacks
+
+std::uint32_t native_lanes(const DeviceSummary& device) {
+    if (!device.is_cpu) return 1;
+    for (const std::uint32_t lanes : {16u, 8u, 4u})
+        if (device.native_lanes >= lanes) return lanes;
+    return 1;
+}
+
+std::uint32_t rounded_up(std::uint32_t value, std::uint32_t step) {
+    return (value + step - 1) / step * step;
+}
+
+void check_lanes(std::uint32_t lanes) {
+    if (lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)
+        throw NoSuchDevice("--lanes " + std::to_string(lanes) + ": must be 1, 4, 8 or 16");
+}
+
+void check_fits(const DeviceSummary& device, const PeArray& array) {
+    if (array.pe_count() > device.max_work_group)
+        throw NoSuchDevice("--pe " + std::to_string(array.width) + "x" +
+                           std::to_string(array.height) + ": " + device.name + " takes at most " +
+                           std::to_string(device.max_work_group) + " work-items a group");
+    const std::uint64_t bytes = std::uint64_t{array.bytes_per_pe()} * array.pe_count();
+    if (bytes + 16384 > device.local_memory)  // 16 KiB: a batch of patch parameters
+        throw NoSuchDevice("--tile " + std::to_string(array.tile_width) + "x" +
+                           std::to_string(array.tile_height) + ": needs " + std::to_string(bytes) +
+                           " bytes of local memory; " + device.name + " has " +
+                           std::to_string(device.local_memory));
+}
+
+}  // namespace
+
+std::string PeArray::description() const {
+    return std::to_string(width) + "x" + std::to_string(height) + " PEs, " +
+           std::to_string(lanes) + (lanes == 1 ? " lane" : " lanes") + ", tile " +
+           std::to_string(tile_width) + "x" + std::to_string(tile_height);
+}
+
+PeArray fit_pe_array(const DeviceSummary& device, const PeArrayRequest& request) {
+    PeArray array;
+    array.lanes = request.lanes != 0 ? request.lanes : native_lanes(device);
+    check_lanes(array.lanes);
+    array.width = request.width != 0 ? request.width : device.is_cpu ? kCpuTile / array.lanes : 32;
+    array.height = request.height != 0 ? request.height : device.is_cpu ? 1 : 8;
+    const std::uint32_t tile = device.is_cpu ? kCpuTile : 32;
+    array.tile_width = rounded_up(request.tile_width != 0 ? request.tile_width : tile,
+                                  array.area_width());
+    array.tile_height = rounded_up(request.tile_height != 0 ? request.tile_height : tile,
+                                   array.area_height());
+    const std::uint32_t wanted = std::max(1u, device.compute_units) * kArraysPerUnit;
+    // Large arrays have PEs enough in fewer of them; a stack of a few patches only costs bins.
+    array.array_count = std::clamp(256u / array.pe_count(), 1u, wanted);
+    check_fits(device, array);
+    return array;
+}
+
+}  // namespace mp1map

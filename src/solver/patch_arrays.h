@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "scene/mesh.h"
+
+namespace hemirad {
+
+/// The mesh as the PEs hold it: structure of arrays, floats, normalised into [-1, 1] in double
+/// precision first. The scale is a power of two, so scaling a scene by one changes no bit.
+struct PatchArrays {
+    std::uint32_t patch_count = 0;
+    std::uint32_t stride = 0;        ///< patches, padded to whole blocks of kReduceBlock
+    std::uint32_t corner_count = 4;  ///< 3 where the scene has triangles only
+    std::vector<float> corners;      ///< [corner][axis][stride]
+    std::vector<float> normals;      ///< [axis][stride], unit; 0 beyond the last patch
+    glm::dvec3 centre{};
+    double scale = 1;  ///< normalised = (world - centre) * scale
+};
+
+/// Throws InputError where the scene's extent cannot be normalised.
+PatchArrays patch_arrays(const Mesh& mesh);
+
+}  // namespace hemirad

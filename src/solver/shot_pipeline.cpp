@@ -1,0 +1,270 @@
+#include "solver/shot_pipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "solver/kernel_source.h"
+
+namespace hemirad {
+namespace {
+
+constexpr std::uint32_t kWidestLanes = 16;
+// PEs of the two kernels that one array runs alone; any number gives the same bits.
+constexpr std::uint32_t kPrefixPes = 64, kReducePes = 64;
+// A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
+constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
+
+constexpr std::array kKernelNames = {
+    "init_plane", "aim_hemisphere", "cull_patches",    "set_up_projection", "count_areas",
+    "prefix_sum", "bin_areas",      "project_patches", "update_radiosity",  "choose_shooter"};
+
+std::uint32_t quotient_up(std::uint64_t value, std::uint64_t divisor) {
+    return static_cast<std::uint32_t>((value + divisor - 1) / divisor);
+}
+
+std::uint32_t count_tiles(std::uint32_t resolution, const mp1map::PeArray& array) {
+    return quotient_up(resolution, array.tile_width) * quotient_up(resolution, array.tile_height);
+}
+
+// Patches a PE manages: whole datapaths of the widest kind, so that stacks do not depend on lanes.
+std::uint32_t stack_depth(std::uint32_t stride, std::uint32_t stack_count) {
+    return quotient_up(quotient_up(stride, stack_count), kWidestLanes) * kWidestLanes;
+}
+
+std::uint64_t list_capacity(std::uint64_t stride) {
+    return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
+}
+
+std::string definition(const char* name, std::uint64_t value) {
+    return std::string(" -D") + name + "=" + std::to_string(value);
+}
+
+std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution,
+                          std::uint32_t corner_count, std::size_t bands, bool keep_owners) {
+    return definition("LANES", array.lanes) + definition("PE_WIDTH", array.width) +
+           definition("PE_HEIGHT", array.height) + definition("TILE_WIDTH", array.tile_width) +
+           definition("TILE_HEIGHT", array.tile_height) + definition("RESOLUTION", resolution) +
+           definition("CORNERS", corner_count) + definition("BANDS", bands) +
+           definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
+           (keep_owners ? " -DKEEP_OWNERS" : "");
+}
+
+device::Shot first_shot() {
+    device::Shot shot{};
+    shot.patch = -1;
+    shot.status = kRunning;
+    shot.unshot_fraction = 1;
+    shot.least_proxels = std::numeric_limits<std::uint32_t>::max();
+    return shot;
+}
+
+}  // namespace
+
+std::uint64_t disk_proxel_count(std::uint32_t resolution) {
+    const std::int64_t n = resolution;
+    std::uint64_t count = 0;
+    for (std::int64_t b = 1 - n; b < n; b += 2) {
+        // Odd or even as n is not: columns a with a^2 < n^2 - b^2.
+        std::int64_t half = static_cast<std::int64_t>(std::sqrt(static_cast<double>(n * n - b * b)));
+        while (half * half >= n * n - b * b) --half;
+        while ((half + 1) * (half + 1) < n * n - b * b) ++half;
+        if ((half - (n - 1)) % 2 != 0) --half;
+        if (half >= 0) count += static_cast<std::uint64_t>(half + 1);
+    }
+    return count;
+}
+
+std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
+                                     std::size_t bands, std::uint32_t resolution,
+                                     const mp1map::PeArray& array) {
+    const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
+    const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
+    const std::uint64_t slots =
+        stacks * stack_depth(static_cast<std::uint32_t>(stride), static_cast<std::uint32_t>(stacks));
+    const std::uint64_t tiles = count_tiles(resolution, array);
+    const std::uint64_t geometry = stride * 4 * (3 * corner_count + 3);
+    const std::uint64_t radiosity = stride * 4 * (4 * bands + 1);
+    const std::uint64_t projection = slots * (sizeof(device::Projection) + 4) + stacks * 4;
+    const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * stacks);
+    const std::uint64_t plane = 4 * tiles * array.tile_width * array.tile_height;
+    const std::uint64_t reduction =
+        stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
+    return geometry + radiosity + projection + lists + plane + reduction;
+}
+
+ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
+                           const PipelineSettings& settings, const mp1map::Device& device)
+    : array_(mp1map::fit_pe_array(device.summary(), settings.pe_array)),
+      acu_(device, settings.timed),
+      resolution_(settings.resolution),
+      samples_(settings.shooter_samples),
+      stride_(patches.stride),
+      band_count_(light.band_count),
+      tile_count_(count_tiles(resolution_, array_)),
+      stack_count_(array_.array_count * array_.pe_count()),
+      depth_(stack_depth(stride_, stack_count_)),
+      disk_proxels_(disk_proxel_count(resolution_) * samples_ * samples_),
+      tolerance_(static_cast<float>(settings.tolerance)),
+      per_proxel_(static_cast<float>(1.0 / static_cast<double>(disk_proxels_))) {
+    build_kernels(device, settings, patches.corner_count);
+    shot_ = acu_.plural(std::vector{first_shot()});
+    corners_ = acu_.plural(patches.corners);
+    normals_ = acu_.plural(patches.normals);
+    roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
+    stack_ = acu_.plural<std::int32_t>(std::size_t{stack_count_} * depth_);
+    stack_height_ = acu_.plural<std::int32_t>(stack_count_);
+    projections_ = acu_.plural<device::Projection>(std::size_t{stack_count_} * depth_);
+    list_end_ = acu_.plural<std::int32_t>(std::size_t{tile_count_} * stack_count_);
+    lists_ = acu_.plural<std::int32_t>(list_capacity(stride_));
+    proxel_count_ = acu_.plural<std::int32_t>(stride_ + 2);
+    owners_ = acu_.plural<std::int32_t>(settings.keep_owners ? roots_.size() : 0);
+
+    const std::size_t states = band_count_ * stride_;
+    received_ = acu_.plural<float>(states);
+    received_rest_ = acu_.plural<float>(states);
+    unshot_ = acu_.plural(light.emitted);
+    reflectance_ = acu_.plural(light.reflectance);
+    band_weight_ = acu_.plural(light.band_weight);
+    shot_flux_ = acu_.plural<float>(band_count_);
+    escaped_ = acu_.plural<float>(2 * band_count_);
+    summaries_ = acu_.plural<device::BlockSummary>(stride_ / kReduceBlock);
+    block_unshot_ = acu_.plural<float>(stride_ / kReduceBlock * band_count_);
+}
+
+void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
+                                 std::uint32_t corner_count) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string options =
+        build_options(array_, resolution_, corner_count, band_count_, settings.keep_owners);
+    for (const char* name : kKernelNames)
+        kernels_.emplace(name,
+                         mp1map::build_kernel(device, name,
+                                              kernel_source(name, settings.kernels_dir), options));
+    build_seconds_ =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.at(name); }
+
+mp1map::Grid ShotPipeline::stack_grid() const { return {array_.array_count, array_.pe_count()}; }
+
+mp1map::Grid ShotPipeline::tile_grid() const { return {tile_count_, array_.pe_count()}; }
+
+void ShotPipeline::init_plane() { acu_.issue(kernel("init_plane"), tile_grid(), roots_); }
+
+void ShotPipeline::aim_hemisphere(std::uint32_t part) {
+    acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, corners_, normals_, cl_int(stride_),
+               cl_int(samples_), cl_int(part));
+}
+
+void ShotPipeline::cull_patches() {
+    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, corners_, normals_, cl_int(stride_),
+               cl_int(depth_), stack_, stack_height_);
+}
+
+void ShotPipeline::set_up_projection() {
+    acu_.issue(kernel("set_up_projection"), stack_grid(), shot_, corners_, normals_,
+               cl_int(stride_), cl_int(depth_), stack_, stack_height_, projections_);
+}
+
+void ShotPipeline::count_areas() {
+    acu_.issue(kernel("count_areas"), stack_grid(), shot_, projections_, stack_height_,
+               cl_int(depth_), list_end_);
+}
+
+void ShotPipeline::prefix_sum() {
+    acu_.issue(kernel("prefix_sum"), {1, kPrefixPes}, shot_, list_end_, cl_int(list_end_.size()),
+               cl_uint(lists_.size()));
+}
+
+void ShotPipeline::bin_areas() {
+    acu_.issue(kernel("bin_areas"), stack_grid(), shot_, projections_, stack_height_,
+               cl_int(depth_), list_end_, lists_);
+}
+
+void ShotPipeline::project_patches() {
+    acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, list_end_,
+               lists_, cl_int(stack_count_), cl_int(escaped_owner()), proxel_count_, owners_);
+}
+
+void ShotPipeline::update_radiosity() {
+    acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
+               per_proxel_, cl_int(stride_), received_, received_rest_, unshot_, reflectance_,
+               band_weight_, summaries_, block_unshot_);
+}
+
+void ShotPipeline::choose_shooter() {
+    acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
+               cl_int(summaries_.size()), unshot_, cl_int(stride_), band_weight_, tolerance_,
+               per_proxel_, proxel_count_, escaped_, shot_flux_);
+}
+
+device::Shot ShotPipeline::shot() { return acu_.unload(shot_).front(); }
+
+void ShotPipeline::set_shot(const device::Shot& shot) {
+    acu_.load(shot_, std::span<const device::Shot>(&shot, 1));
+}
+
+void ShotPipeline::enlarge_lists() {
+    device::Shot halted = shot();
+    lists_ = acu_.plural<std::int32_t>(std::size_t{halted.bin_entries} * 3 / 2);
+    acu_.clear(proxel_count_);
+    halted.status = kRunning;
+    set_shot(halted);
+}
+
+std::vector<double> ShotPipeline::received() {
+    const auto sums = acu_.unload(received_), rests = acu_.unload(received_rest_);
+    std::vector<double> result(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) result[i] = double{sums[i]} + rests[i];
+    return result;
+}
+
+std::vector<float> ShotPipeline::unshot() { return acu_.unload(unshot_); }
+
+std::vector<double> ShotPipeline::escaped() {
+    const auto sums = acu_.unload(escaped_);
+    std::vector<double> result(band_count_);
+    for (std::size_t band = 0; band < band_count_; ++band)
+        result[band] = double{sums[band]} + sums[band_count_ + band];
+    return result;
+}
+
+std::vector<std::int32_t> ShotPipeline::proxel_counts() { return acu_.unload(proxel_count_); }
+
+std::vector<std::int32_t> ShotPipeline::owners() {
+    const auto plural = acu_.unload(owners_);
+    std::vector<std::int32_t> owners(std::size_t{resolution_} * resolution_);
+    const std::uint32_t tile_columns = quotient_up(resolution_, array_.tile_width);
+    const std::uint32_t area_columns = array_.tile_width / array_.area_width();
+    for (std::uint32_t row = 0; row < resolution_; ++row)
+        for (std::uint32_t column = 0; column < resolution_; ++column) {
+            const std::uint32_t x = column % array_.tile_width, y = row % array_.tile_height;
+            const std::uint32_t tile =
+                row / array_.tile_height * tile_columns + column / array_.tile_width;
+            const std::uint32_t layer =
+                y / array_.area_height() * area_columns + x / array_.area_width();
+            const std::uint32_t pe = y % array_.area_height() * array_.width +
+                                     x % array_.area_width() / array_.lanes;
+            const std::size_t in_tile =
+                (std::size_t{layer} * array_.pe_count() + pe) * array_.lanes + x % array_.lanes;
+            owners[std::size_t{row} * resolution_ + column] =
+                plural[std::size_t{tile} * array_.tile_width * array_.tile_height + in_tile];
+        }
+    return owners;
+}
+
+std::vector<device::Projection> ShotPipeline::projections() {
+    const auto slots = acu_.unload(projections_);
+    const auto heights = acu_.unload(stack_height_);
+    std::vector<device::Projection> result;
+    for (std::size_t pe = 0; pe < heights.size(); ++pe)
+        result.insert(result.end(), slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_),
+                      slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_ + heights[pe]));
+    return result;
+}
+
+}  // namespace hemirad

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernels/shared.h"
+#include "mp1map/acu.h"
+#include "mp1map/pe_array.h"
+#include "solver/patch_arrays.h"
+
+namespace hemirad {
+
+struct PipelineSettings {
+    std::uint32_t resolution = 512;
+    std::uint32_t shooter_samples = 1;
+    double tolerance = 1e-3;
+    mp1map::PeArrayRequest pe_array;
+    std::optional<std::filesystem::path> kernels_dir;
+    bool timed = false;
+    bool keep_owners = false;  ///< for tests: owners() after each projection
+};
+
+/// Flux and reflectance of the solved bands, [band * stride + patch]; the fluxes of a band add up
+/// to 1, or to 0 where it is dark.
+struct PatchLight {
+    std::size_t band_count = 1;
+    std::vector<float> emitted;
+    std::vector<float> reflectance;
+    std::vector<float> band_weight;  ///< [band] 1 / emitted flux, 0 for a dark band
+};
+
+/// The kernels of a shot and the plural variables they work on: one method a kernel, of its name.
+/// What a shooter sees and what becomes of its flux stays on the device.
+class ShotPipeline {
+  public:
+    ShotPipeline(const PatchArrays& patches, const PatchLight& light,
+                 const PipelineSettings& settings, const mp1map::Device& device);
+
+    void init_plane();
+    void aim_hemisphere(std::uint32_t part);
+    void cull_patches();
+    void set_up_projection();
+    void count_areas();
+    void prefix_sum();
+    void bin_areas();
+    void project_patches();
+    void update_radiosity();
+    void choose_shooter();
+
+    /// Waits; how far the device has come.
+    device::Shot shot();
+    void set_shot(const device::Shot& shot);
+    /// After kBinsFull: makes room for the lists and lets the halted shot be repeated.
+    void enlarge_lists();
+
+    std::vector<double> received();  ///< [band * stride + patch], of the emitted flux
+    std::vector<float> unshot();     ///< [band * stride + patch]
+    std::vector<double> escaped();   ///< [band]
+    std::vector<std::int32_t> proxel_counts();
+    /// Owner of proxel row * resolution + column; patch_count() + padding: escaped. keep_owners.
+    std::vector<std::int32_t> owners();
+    std::int32_t escaped_owner() const { return static_cast<std::int32_t>(stride_); }
+    std::vector<device::Projection> projections();  ///< of the last shot, in patch order
+
+    std::uint64_t disk_proxels() const { return disk_proxels_; }
+    const mp1map::PeArray& pe_array() const { return array_; }
+    std::uint32_t stride() const { return stride_; }
+    std::size_t band_count() const { return band_count_; }
+    mp1map::Acu& acu() { return acu_; }
+    std::uint64_t device_bytes() const { return acu_.allocated_bytes(); }
+    double build_seconds() const { return build_seconds_; }
+
+  private:
+    mp1map::Kernel& kernel(const std::string& name);
+    void build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
+                       std::uint32_t corner_count);
+    mp1map::Grid stack_grid() const;
+    mp1map::Grid tile_grid() const;
+
+    mp1map::PeArray array_;
+    mp1map::Acu acu_;
+    std::map<std::string, mp1map::Kernel> kernels_;
+    double build_seconds_ = 0;
+
+    std::uint32_t resolution_, samples_, stride_;
+    std::size_t band_count_;
+    std::uint32_t tile_count_, stack_count_, depth_;
+    std::uint64_t disk_proxels_;
+    float tolerance_, per_proxel_;
+
+    mp1map::Plural<device::Shot> shot_;
+    mp1map::Plural<float> corners_, normals_, roots_;
+    mp1map::Plural<std::int32_t> stack_, stack_height_;
+    mp1map::Plural<device::Projection> projections_;
+    mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;
+    mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
+    mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
+    mp1map::Plural<device::BlockSummary> summaries_;
+};
+
+/// Proxels whose centre lies in the disk (sec. 1.3.2), of resolution^2.
+std::uint64_t disk_proxel_count(std::uint32_t resolution);
+
+/// Bytes a pipeline holds on the device.
+std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
+                                     std::size_t bands, std::uint32_t resolution,
+                                     const mp1map::PeArray& array);
+
+}  // namespace hemirad

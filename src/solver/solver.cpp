@@ -1,0 +1,168 @@
+#include "solver/solver.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace hemirad {
+namespace {
+
+// The host looks at the device's progress about this often; shots in between need no round trip.
+constexpr double kSecondsBetweenLooks = 0.1;
+constexpr std::uint64_t kMostShotsBetweenLooks = 4096;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+PatchLight patch_light(const Mesh& mesh, const BandPlan& plan, std::uint32_t stride) {
+    PatchLight light;
+    light.band_count = plan.solved.size();
+    light.emitted.resize(light.band_count * stride);
+    light.reflectance.resize(light.band_count * stride);
+    for (std::size_t band = 0; band < light.band_count; ++band) {
+        const double emitted = emitted_flux(mesh, plan.solved[band]);
+        light.band_weight.push_back(emitted > 0 ? 1.0f : 0.0f);
+        for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
+            const Patch& patch = mesh.patches[i];
+            const double own = emitted_radiosity(mesh, patch, plan.solved[band]) * mesh.area(patch);
+            light.emitted[band * stride + i] = emitted > 0 ? static_cast<float>(own / emitted) : 0;
+            light.reflectance[band * stride + i] = reflectance(mesh, patch, plan.solved[band]);
+        }
+    }
+    return light;
+}
+
+PipelineSettings pipeline_settings(const SolverSettings& settings) {
+    PipelineSettings result;
+    result.resolution = settings.resolution;
+    result.shooter_samples = settings.shooter_samples;
+    result.tolerance = settings.tolerance;
+    result.pe_array = settings.pe_array;
+    result.kernels_dir = settings.kernels_dir;
+    result.timed = settings.timed;
+    return result;
+}
+
+ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSettings& settings,
+                          const mp1map::Device& device) {
+    const PatchArrays patches = patch_arrays(mesh);
+    return ShotPipeline(patches, patch_light(mesh, plan, patches.stride),
+                        pipeline_settings(settings), device);
+}
+
+}  // namespace
+
+ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& settings,
+                                     const mp1map::Device& device)
+    : mesh_(mesh),
+      settings_(settings),
+      plan_(plan_bands(mesh)),
+      pipeline_(pipeline_for(mesh, plan_, settings, device)) {
+    pipeline_.init_plane();
+    pipeline_.update_radiosity();
+    pipeline_.choose_shooter();
+}
+
+// One pass of the loop at the end of sec. 1.5.4. Its inner loops, over the levels of the stacks
+// and their patches, run inside the kernels.
+void ProgressiveSolver::shoot() {
+    const std::uint32_t parts = settings_.shooter_samples * settings_.shooter_samples;
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        pipeline_.aim_hemisphere(part);
+        pipeline_.cull_patches();
+        pipeline_.set_up_projection();
+        pipeline_.count_areas();
+        pipeline_.prefix_sum();
+        pipeline_.bin_areas();
+        pipeline_.project_patches();
+    }
+    pipeline_.update_radiosity();
+    pipeline_.choose_shooter();
+}
+
+// Makes `shots` more shots, fewer where the device finds that it is done: the rest then do nothing.
+Progress ProgressiveSolver::advance(std::uint64_t shots) {
+    for (std::uint64_t i = 0; i < shots; ++i) shoot();
+    device::Shot state = pipeline_.shot();
+    if (state.status == kBinsFull) {
+        pipeline_.enlarge_lists();
+        state = pipeline_.shot();
+    }
+    return {state.shots, state.unshot_fraction, 0};
+}
+
+Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_progress) {
+    const auto start = std::chrono::steady_clock::now();
+    std::uint64_t batch = 1;
+    for (;;) {
+        const device::Shot state = pipeline_.shot();
+        if (state.status == kConverged || state.status == kExhausted) return Stop::converged;
+        if (state.shots >= settings_.max_shots) return Stop::max_shots;
+
+        std::uint64_t shots = std::min(batch, settings_.max_shots - state.shots);
+        if (settings_.stop_every != 0)
+            shots = std::min(shots, settings_.stop_every - state.shots % settings_.stop_every);
+        const double before = seconds_since(start);
+        Progress progress = advance(shots);
+        progress.seconds = seconds_since(start);
+        const double per_shot = (progress.seconds - before) / static_cast<double>(shots);
+        batch = std::clamp<std::uint64_t>(
+            static_cast<std::uint64_t>(kSecondsBetweenLooks / std::max(per_shot, 1e-9)), 1,
+            std::min(2 * batch, kMostShotsBetweenLooks));
+
+        if (!on_progress(progress)) return Stop::interrupted;
+        if (progress.seconds >= settings_.time_limit) return Stop::time_limit;
+    }
+}
+
+Solution ProgressiveSolver::solution() {
+    const device::Shot state = pipeline_.shot();
+    const auto received = pipeline_.received();
+    const auto unshot = pipeline_.unshot();
+    const auto escaped = pipeline_.escaped();
+
+    Solution solution;
+    solution.bands = mesh_.bands;
+    solution.shots = state.shots;
+    solution.unshot_fraction = state.unshot_fraction;
+    solution.converged = state.status == kConverged || state.status == kExhausted;
+    for (std::size_t band = 0; band < mesh_.bands.size(); ++band) {
+        const std::size_t solved = plan_.solution[band];
+        const double emitted = emitted_flux(mesh_, band);
+        Ledger ledger{emitted, 0, emitted * escaped[solved], 0};
+        std::vector<double> irradiance, radiosity;
+        for (std::size_t i = 0; i < mesh_.patches.size(); ++i) {
+            const Patch& patch = mesh_.patches[i];
+            const std::size_t at = solved * pipeline_.stride() + i;
+            const double flux = emitted * received[at];
+            const double rho = reflectance(mesh_, patch, band);
+            irradiance.push_back(flux / mesh_.area(patch));
+            radiosity.push_back(emitted_radiosity(mesh_, patch, band) + rho * irradiance.back());
+            ledger.absorbed += (1 - rho) * flux;
+            ledger.unshot += emitted * unshot[at];
+        }
+        solution.irradiance.push_back(std::move(irradiance));
+        solution.radiosity.push_back(std::move(radiosity));
+        solution.ledger.push_back(ledger);
+    }
+    return solution;
+}
+
+Closure ProgressiveSolver::closure() {
+    const device::Shot state = pipeline_.shot();
+    if (state.shots == 0) return {};
+    const double disk = static_cast<double>(pipeline_.disk_proxels());
+    return {state.least_proxels / disk, state.most_proxels / disk};
+}
+
+const mp1map::PeArray& ProgressiveSolver::pe_array() const { return pipeline_.pe_array(); }
+
+std::uint64_t ProgressiveSolver::device_bytes() const { return pipeline_.device_bytes(); }
+
+double ProgressiveSolver::build_seconds() const { return pipeline_.build_seconds(); }
+
+std::map<std::string, std::pair<double, std::uint64_t>> ProgressiveSolver::kernel_seconds() {
+    return pipeline_.acu().kernel_seconds();
+}
+
+}  // namespace hemirad

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mp1map/device.h"
+#include "mp1map/pe_array.h"
+#include "scene/mesh.h"
+#include "solver/bands.h"
+#include "solver/shot_pipeline.h"
+#include "solver/solution.h"
+
+namespace hemirad {
+
+struct SolverSettings {
+    std::uint32_t resolution = 512;    ///< N x N proxels on the square around the disk, 16 to 8192
+    std::uint32_t shooter_samples = 1; ///< M x M hemispheres a shooting patch
+    double tolerance = 1e-3;           ///< stop where unshot / emitted is below, in every band
+    std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
+    double time_limit = std::numeric_limits<double>::infinity();  ///< s
+    /// Calls back whenever the shots reach a multiple of this, besides a few times a second; 0: not.
+    std::uint64_t stop_every = 0;
+    mp1map::PeArrayRequest pe_array;
+    std::optional<std::filesystem::path> kernels_dir;  ///< read kernels from here
+    bool timed = false;                                ///< keep the seconds of each kernel
+};
+
+struct Progress {
+    std::uint64_t shots = 0;
+    double unshot_fraction = 1;
+    double seconds = 0;  ///< since solve() began
+};
+
+enum class Stop { converged, max_shots, time_limit, interrupted };
+
+/// Proxels that a shot's patches own and that escape, over those in the disk; both 1.
+struct Closure {
+    double least = 1, most = 1;
+};
+
+/// Progressive radiosity by hemispherical projection: the loop of sec. 1.5.4 on one device. All
+/// state of the radiosity stays on the device until solution() asks for it.
+class ProgressiveSolver {
+  public:
+    /// Uploads the mesh and builds the kernels. Throws InputError, mp1map::DeviceError or
+    /// mp1map::NoSuchDevice.
+    ProgressiveSolver(const Mesh& mesh, const SolverSettings& settings,
+                      const mp1map::Device& device);
+
+    /// Shoots until the tolerance or a limit is met, or the callback returns false. May be called
+    /// again. A scene that emits nothing has converged.
+    Stop solve(const std::function<bool(const Progress&)>& on_progress);
+
+    Solution solution();
+    Closure closure();
+    const mp1map::PeArray& pe_array() const;
+    std::uint64_t device_bytes() const;  ///< memory held on the device
+    double build_seconds() const;        ///< that the kernels took to compile
+    /// Seconds and launches by kernel; empty unless timed.
+    std::map<std::string, std::pair<double, std::uint64_t>> kernel_seconds();
+
+  private:
+    void shoot();
+    Progress advance(std::uint64_t shots);
+
+    const Mesh& mesh_;
+    SolverSettings settings_;
+    BandPlan plan_;
+    ShotPipeline pipeline_;
+};
+
+}  // namespace hemirad
