@@ -32,23 +32,22 @@ class ExrStream : public Imf::OStream {
 
     void write(const char bytes[], int count) override {
         stream_.write(bytes, count);
-        require(stream_.good());
+        require_good();
     }
+    /// Does not throw, because ~OutputFile() asks; a stream that cannot tell fails its next write.
     std::uint64_t tellp() override {
         const auto position = stream_.tellp();
-        require(position >= 0);
+        if (position < 0) stream_.setstate(std::ios::badbit);
         return static_cast<std::uint64_t>(position);
     }
     void seekp(std::uint64_t position) override {
         stream_.seekp(static_cast<std::streamoff>(position));
-        require(stream_.good());
+        require_good();
     }
 
   private:
-    void require(bool done) {
-        if (done) return;
-        stream_.setstate(std::ios::badbit);
-        throw std::ios_base::failure("write failed");
+    void require_good() const {
+        if (!stream_.good()) throw std::ios_base::failure("write failed");
     }
     std::ostream& stream_;
 };

@@ -1,0 +1,156 @@
+#include "lightmap/atomic_file.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <stdexcept>
+
+#include "errors.h"
+#include "lightmap/support.h"
+
+namespace hemirad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFile : public InFolder {};
+
+void write_text(std::ostream& stream) { stream << "whole"; }
+
+std::string failure_of(const fs::path& path,
+                       const std::function<void(std::ostream&)>& write = write_text) {
+    return message_of<OutputError>([&] { write_atomically(path, write); });
+}
+
+/// A disk with room for `byte_count` bytes a file.
+class SmallDisk {
+  public:
+    explicit SmallDisk(rlim_t byte_count) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit small{byte_count, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~SmallDisk() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST_F(AtomicFile, HoldsWhatWasWrittenAndNothingLiesBesideIt) {
+    write_atomically(file("a.txt"), write_text);
+
+    EXPECT_EQ(bytes_of(file("a.txt")), "whole");
+    EXPECT_EQ(names_in_folder(), std::set<std::string>{"a.txt"});
+}
+
+TEST_F(AtomicFile, ReplacesAnOlderOne) {
+    std::ofstream(file("a.txt")) << "older and longer";
+
+    write_atomically(file("a.txt"), write_text);
+
+    EXPECT_EQ(bytes_of(file("a.txt")), "whole");
+}
+
+TEST_F(AtomicFile, ASymbolicLinkStaysOne) {
+    std::ofstream(file("a.txt")) << "older";
+    fs::create_symlink("a.txt", file("link"));
+
+    write_atomically(file("link"), write_text);
+
+    EXPECT_TRUE(fs::is_symlink(file("link")));
+    EXPECT_EQ(bytes_of(file("a.txt")), "whole");
+}
+
+TEST_F(AtomicFile, AMissingFolderIsNamed) {
+    EXPECT_EQ(failure_of(file("no/a.txt")),
+              file("no/a.txt").string() + ": No such file or directory");
+    EXPECT_TRUE(names_in_folder().empty());
+}
+
+TEST_F(AtomicFile, AFileInPlaceOfTheFolderIsNamed) {
+    std::ofstream(file("no"));
+
+    EXPECT_EQ(failure_of(file("no/a.txt")), file("no/a.txt").string() + ": Not a directory");
+}
+
+TEST_F(AtomicFile, ADirectoryIsNotReplaced) {
+    fs::create_directory(file("a.txt"));
+
+    EXPECT_EQ(failure_of(file("a.txt")), file("a.txt").string() + ": Is a directory");
+    EXPECT_EQ(names_in_folder(), std::set<std::string>{"a.txt"});
+}
+
+TEST_F(AtomicFile, AFolderIsNotAFile) {
+    EXPECT_EQ(failure_of("no/"), "no/: names a folder, not a file");
+    EXPECT_EQ(failure_of(""), ": names a folder, not a file");
+}
+
+TEST_F(AtomicFile, AnUnwritableFolderIsRefused) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+
+    const auto message = failure_of(file("a.txt"));
+
+    fs::permissions(folder_, fs::perms::owner_all);
+    EXPECT_EQ(message, file("a.txt").string() + ": Permission denied");
+}
+
+TEST_F(AtomicFile, AReadOnlyFileIsRefused) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+    std::ofstream(file("a.txt")) << "older";
+    fs::permissions(file("a.txt"), fs::perms::owner_read);
+
+    EXPECT_EQ(failure_of(file("a.txt")), file("a.txt").string() + ": Permission denied");
+    EXPECT_EQ(bytes_of(file("a.txt")), "older");
+}
+
+TEST_F(AtomicFile, AFullDiskKeepsTheOlderFileAndLeavesNothingElse) {
+    std::ofstream(file("a.txt")) << "older";
+    const std::string text(100'000, 'x');
+
+    std::string message;
+    {
+        const SmallDisk disk(4096);
+        message = failure_of(file("a.txt"), [&](std::ostream& stream) { stream << text; });
+    }
+
+    EXPECT_EQ(message, file("a.txt").string() + ": File too large");
+    EXPECT_EQ(bytes_of(file("a.txt")), "older");
+    EXPECT_EQ(names_in_folder(), std::set<std::string>{"a.txt"});
+}
+
+TEST_F(AtomicFile, ADeviceIsWrittenToNotReplaced) {
+    write_atomically("/dev/null", write_text);
+
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_EQ(failure_of("/dev/full"), "/dev/full: No space left on device");
+    EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(AtomicFile, AFaultOfTheWriterLeavesNothing) {
+    EXPECT_EQ(failure_of(file("a.txt"), [](std::ostream&) { throw std::runtime_error("odd"); }),
+              file("a.txt").string() + ": odd");
+    EXPECT_THROW(write_atomically(file("a.txt"), [](std::ostream&) { throw InputError("bad"); }),
+                 InputError);
+    EXPECT_TRUE(names_in_folder().empty());
+}
+
+TEST_F(AtomicFile, AskingBeforehandChangesNothing) {
+    std::ofstream(file("a.txt")) << "older";
+
+    check_writable(file("a.txt"));
+    check_writable(file("b.txt"));
+
+    EXPECT_EQ(bytes_of(file("a.txt")), "older");
+    EXPECT_EQ(names_in_folder(), std::set<std::string>{"a.txt"});
+    EXPECT_THROW(check_writable(file("no/a.txt")), OutputError);
+    EXPECT_THROW(check_writable(folder_), OutputError);
+}
+
+}  // namespace
+}  // namespace hemirad
