@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "scene/gltf_file.h"
+
+namespace hemirad {
+namespace {
+
+// Deeper than any exporter nests; tinygltf descends into extras by recursion.
+constexpr int kDeepestNesting = 200;
+constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;  // glTF 2.0, sec. 4.4
+
+std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
+    const auto byte = [&](std::size_t i) {
+        return std::uint32_t{static_cast<unsigned char>(bytes[offset + i])};
+    };
+    return byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
+}
+
+bool is_binary(const InputFile& file) { return file.bytes.starts_with("glTF"); }
+
+void check_header(const InputFile& file) {
+    const std::size_t size = file.bytes.size();
+    if (size < kHeaderSize + kChunkHeaderSize) fail(file, "glb header", "is truncated");
+    const std::uint32_t length = word_at(file.bytes, 8);
+    if (word_at(file.bytes, 4) != 2) fail(file, "glb header", "is not of version 2");
+    if (length > size) {
+        fail(file, "glb header",
+             "announces " + std::to_string(length) + " bytes, the file holds " +
+                 std::to_string(size));
+    }
+}
+
+std::string_view json_text(const InputFile& file) {
+    if (!is_binary(file)) return file.bytes;
+    check_header(file);
+    const std::size_t length = word_at(file.bytes, kHeaderSize);
+    const std::size_t begin = kHeaderSize + kChunkHeaderSize;
+    if (length > file.bytes.size() - begin) fail(file, "glb JSON chunk", "is truncated");
+    return std::string_view(file.bytes).substr(begin, length);
+}
+
+void check_nesting(const InputFile& file, std::string_view text) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string && c == '\\') ++i;
+        if (c == '"') in_string = !in_string;
+        if (in_string) continue;
+        if (c == '{' || c == '[') ++depth;
+        if (c == '}' || c == ']') --depth;
+        if (depth > kDeepestNesting) fail(file, "JSON", "is nested too deeply");
+    }
+}
+
+/// nlohmann and tinygltf write several lines and prefixes; ours are one line.
+std::string one_line(const std::string& message) {
+    std::string line = message.substr(0, message.find_first_of("\r\n"));
+    const auto prefix = line.starts_with("[json") ? line.find("] ") : std::string::npos;
+    if (prefix != std::string::npos) line.erase(0, prefix + 2);
+    return printable(line);
+}
+
+Json parse_json(const InputFile& file) {
+    const std::string_view text = json_text(file);
+    check_nesting(file, text);
+    try {
+        return Json::parse(text);
+    } catch (const Json::exception& error) {
+        fail(file, "JSON", one_line(error.what()));
+    }
+}
+
+/// What tinygltf may read: files in the scene's folder. It also looks in the working directory and
+/// decodes %-escapes after check_gltf has seen the reference.
+bool is_in_folder(const std::string& path, const std::filesystem::path& folder) {
+    const auto relative = std::filesystem::path(path).lexically_normal().lexically_relative(
+        folder.lexically_normal());
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+bool may_read(const std::string& path, void* folder) {
+    return is_in_folder(path, *static_cast<const std::filesystem::path*>(folder)) &&
+           std::filesystem::is_regular_file(path);
+}
+
+bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
+                void* folder) {
+    std::ifstream stream(path, std::ios::binary);
+    if (!may_read(path, folder) || !stream) {
+        *error += "cannot be read";
+        return false;
+    }
+    bytes->assign(std::istreambuf_iterator<char>(stream), {});
+    return true;
+}
+
+std::string keep_path(const std::string& path, void*) { return path; }
+
+/// Called for every image; tinygltf does not check bytes that lie in a bufferView, so those are
+/// left for view_bytes.
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+    if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+    return true;
+}
+
+bool load_model(const InputFile& file, tinygltf::Model& model, std::string& error) {
+    std::filesystem::path folder = file.path.parent_path();
+    if (folder.empty()) folder = ".";
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(keep_encoded, nullptr);
+    loader.SetFsCallbacks({may_read, keep_path, read_whole, nullptr, &folder});
+    std::string warning;
+    const auto size = static_cast<unsigned>(file.bytes.size());
+    if (is_binary(file)) {
+        const auto* bytes = reinterpret_cast<const unsigned char*>(file.bytes.data());
+        return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, size, folder.string());
+    }
+    return loader.LoadASCIIFromString(&model, &error, &warning, file.bytes.data(), size,
+                                      folder.string());
+}
+
+}  // namespace
+
+GltfFile load_gltf(const InputFile& file) {
+    if (file.bytes.size() > UINT32_MAX) fail(file, "glTF", "files above 4 GiB are not read");
+    GltfFile gltf{file, parse_json(file), {}};
+    check_gltf(file, gltf.json);
+    std::string error;
+    bool loaded = false;
+    try {
+        loaded = load_model(file, gltf.model, error);
+    } catch (const std::exception& exception) {  // of tinygltf's at() and of its JSON
+        error = exception.what();
+    }
+    if (!loaded) fail(file, "glTF", one_line(error));
+    return gltf;
+}
+
+std::string_view view_bytes(const tinygltf::Model& model, int view) {
+    const auto& buffer_view = model.bufferViews[static_cast<std::size_t>(view)];
+    const auto& bytes = model.buffers[static_cast<std::size_t>(buffer_view.buffer)].data;
+    return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())
+        .substr(buffer_view.byteOffset, buffer_view.byteLength);
+}
+
+}  // namespace hemirad

@@ -1,0 +1,99 @@
+#include "scene/input_file.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "errors.h"
+
+namespace hemirad {
+namespace {
+
+void check_reflectance(const InputFile& file, const Material& material, double value) {
+    const std::string element = "material " + in_quotes(material.name);
+    if (!std::isfinite(value)) fail(file, element, "reflectance is not finite");
+    if (value < 0) fail(file, element, "reflectance " + number(value) + " is below 0");
+    if (value > 1) fail(file, element, "reflectance " + number(value) + " is above 1");
+}
+
+void check_emission(const InputFile& file, const Material& material, double value) {
+    const std::string element = "material " + in_quotes(material.name);
+    if (!std::isfinite(value)) fail(file, element, "emission is not finite");
+    if (value < 0) fail(file, element, "emission " + number(value) + " is below 0");
+}
+
+}  // namespace
+
+InputFile read_input_file(const std::filesystem::path& path) {
+    InputFile file{path, printable(path.filename().string()), {}};
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        throw InputError(printable(path.string()) + ": does not exist");
+    }
+    if (std::filesystem::is_directory(status)) {
+        throw InputError(printable(path.string()) + ": is a folder, not a scene file");
+    }
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream bytes;
+    if (stream.peek() != std::ifstream::traits_type::eof()) bytes << stream.rdbuf();
+    if (!stream) throw InputError(printable(path.string()) + ": cannot be read");
+    file.bytes = std::move(bytes).str();
+    return file;
+}
+
+std::string printable(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code >= 0x20 && code != 0x7f) {
+            result += c;
+            continue;
+        }
+        std::array<char, 5> escape{};
+        std::snprintf(escape.data(), escape.size(), "\\x%02x", code);
+        result += escape.data();
+    }
+    return result;
+}
+
+std::string in_quotes(std::string_view text) { return "\"" + printable(text) + "\""; }
+
+std::string number(double value) {
+    std::array<char, 512> text{};
+    std::snprintf(text.data(), text.size(), "%.2f", value);
+    if (std::strtod(text.data(), nullptr) == value && std::abs(value) < 1e6) return text.data();
+    std::snprintf(text.data(), text.size(), "%.9g", value);
+    return text.data();
+}
+
+void fail(const InputFile& file, const std::string& element, const std::string& reason) {
+    throw InputError(file.name + ": " + element + ": " + reason);
+}
+
+void warn(Scene& scene, const std::string& element, const std::string& reason) {
+    scene.warnings.push_back(printable(scene.file) + ": " + element + ": " + reason);
+}
+
+std::optional<std::filesystem::path> resolve_reference(const InputFile& file,
+                                                       const std::string& reference) {
+    const std::filesystem::path relative(reference);
+    const bool windows = reference.find_first_of("\\:") != std::string::npos;
+    if (reference.empty() || relative.is_absolute() || windows) return std::nullopt;
+    const auto normal = relative.lexically_normal();
+    if (*normal.begin() == "..") return std::nullopt;
+    return file.path.parent_path() / normal;
+}
+
+void check_scene(const InputFile& file, const Scene& scene) {
+    for (const auto& material : scene.materials) {
+        for (const double value : material.reflectance) check_reflectance(file, material, value);
+        for (const double value : material.emission) check_emission(file, material, value);
+    }
+    if (scene.faces.empty()) throw InputError(file.name + ": holds no faces");
+}
+
+}  // namespace hemirad

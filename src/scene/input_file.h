@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scene/scene.h"
+
+namespace hemirad {
+
+/// A file as it lies on the disk, and what messages call it.
+struct InputFile {
+    std::filesystem::path path;
+    std::string name;  ///< without folder, printable
+    std::string bytes;
+};
+
+/// Throws InputError for what is missing, a folder, unreadable or empty.
+InputFile read_input_file(const std::filesystem::path& path);
+
+/// Control characters become \xNN, so that a name cannot forge or break a line of output.
+std::string printable(std::string_view text);
+/// The printable text in double quotes.
+std::string in_quotes(std::string_view text);
+/// At least two decimals, and as many as tell the value from its rounding: 1.20, 1.00001.
+std::string number(double value);
+
+/// Throws the InputError `FILE: ELEMENT: REASON`.
+[[noreturn]] void fail(const InputFile& file, const std::string& element,
+                       const std::string& reason);
+/// As a line for Scene::warnings.
+void warn(Scene& scene, const std::string& element, const std::string& reason);
+
+/// Where a reference of `file` to another file leads; nothing if it is absolute, another scheme, or
+/// climbs out of the file's folder: a scene from a stranger must not read what is not its own.
+std::optional<std::filesystem::path> resolve_reference(const InputFile& file,
+                                                       const std::string& reference);
+
+/// What Scene promises of spectra and sizes; the checks that all formats share.
+void check_scene(const InputFile& file, const Scene& scene);
+
+Scene read_obj(const InputFile& file);
+Scene read_gltf(const InputFile& file);
+
+}  // namespace hemirad

@@ -1,0 +1,134 @@
+#include "scene/obj_numbers.h"
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+
+namespace hemirad {
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+std::string_view next_word(std::string_view& line) {
+    const auto begin = line.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return line = {};
+    line.remove_prefix(begin);
+    const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+    line.remove_prefix(word.size());
+    return word;
+}
+
+template <class Visit>
+void for_each_line(std::string_view text, Visit visit) {
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const auto end = text.find('\n');
+        visit(number, text.substr(0, end));
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    }
+}
+
+struct Place {
+    const InputFile& file;
+    std::size_t line;
+
+    [[noreturn]] void fail(const std::string& reason) const {
+        hemirad::fail(file, "line " + std::to_string(line), reason);
+    }
+};
+
+template <class Number>
+Number read_number(const Place& place, std::string_view word) {
+    if (word.empty()) place.fail("a number is missing");
+    const std::string_view digits = word.substr(word.front() == '+' ? 1 : 0);
+    Number value{};
+    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), value);
+    if (error == std::errc::result_out_of_range) place.fail(in_quotes(word) + " is out of range");
+    if (error != std::errc{} || end != digits.end()) place.fail(in_quotes(word) + " is no number");
+    return value;
+}
+
+glm::dvec3 read_vector(const Place& place, std::string_view rest) {
+    glm::dvec3 vector{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string_view word = next_word(rest);
+        vector[axis] = read_number<double>(place, word);
+        if (!std::isfinite(vector[axis])) place.fail(in_quotes(word) + " is not finite");
+    }
+    return vector;
+}
+
+/// `7`, `7/1`, `7//3` or `7/1/3`; texture and normal indices mean nothing to us.
+void check_corner(const Place& place, std::string_view corner) {
+    for (int slashes = 0; slashes <= 2; ++slashes) {
+        const auto slash = corner.find('/');
+        const std::string_view index = corner.substr(0, slash);
+        const bool may_be_empty = slashes > 0;
+        if (!(index.empty() && may_be_empty) && read_number<int>(place, index) == 0) {
+            place.fail("index 0, the first is 1");
+        }
+        if (slash == std::string_view::npos) return;
+        corner.remove_prefix(slash + 1);
+    }
+    place.fail("a corner has more than three indices");
+}
+
+/// A comment may end in a backslash (a folder of Windows) without swallowing the next line.
+bool is_continued(std::string_view line) {
+    const auto first = line.find_first_not_of(kBlanks);
+    return !line.empty() && line.back() == '\\' && line[first] != '#';
+}
+
+void check_face(const Place& place, std::string_view rest) {
+    int corners = 0;
+    for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
+        check_corner(place, word);
+        ++corners;
+    }
+    if (corners < 3) place.fail("a face needs three corners");
+}
+
+}  // namespace
+
+std::string unfold_lines(const std::string& bytes) {
+    std::string text;
+    text.reserve(bytes.size() + 1);
+    std::size_t owed = 0, line_begin = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const bool is_pair = bytes[i] == '\r' && i + 1 < bytes.size() && bytes[i + 1] == '\n';
+        if (is_pair) continue;
+        if (bytes[i] != '\n' && bytes[i] != '\r') {
+            text += bytes[i];
+        } else if (is_continued(std::string_view(text).substr(line_begin))) {
+            text.back() = ' ';
+            ++owed;
+        } else {
+            text.append(1 + owed, '\n');
+            owed = 0;
+            line_begin = text.size();
+        }
+    }
+    return text;
+}
+
+ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
+    ObjNumbers numbers;
+    for_each_line(text, [&](std::size_t number, std::string_view line) {
+        const std::string_view keyword = next_word(line);
+        const Place place{file, number};
+        if (keyword == "v") numbers.positions.push_back(read_vector(place, line));
+        if (keyword != "f") return;
+        check_face(place, line);
+        numbers.face_lines.push_back(number);
+    });
+    return numbers;
+}
+
+void check_mtl_numbers(const InputFile& file, const std::string& text) {
+    for_each_line(text, [&](std::size_t number, std::string_view line) {
+        const std::string_view keyword = next_word(line);
+        if (keyword == "Kd" || keyword == "Ke") read_vector(Place{file, number}, line);
+    });
+}
+
+}  // namespace hemirad

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/input_file.h"
+
+namespace hemirad {
+
+/// The numbers of an OBJ file. tinyobjloader takes what is no number for 0 and sums decimals digit
+/// by digit; so it reads the structure, and every number is read and checked here, to the last bit.
+struct ObjNumbers {
+    std::vector<glm::dvec3> positions;
+    std::vector<std::size_t> face_lines;  ///< line of each `f`, from 1
+};
+
+/// Line ends become \n, lines that end in a backslash are joined; line numbers stay.
+std::string unfold_lines(const std::string& bytes);
+
+ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text);
+
+/// Throws InputError where a Kd or Ke does not hold three numbers.
+void check_mtl_numbers(const InputFile& file, const std::string& text);
+
+}  // namespace hemirad

@@ -1,0 +1,289 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "scene/gltf_file.h"
+#include "scene/input_file.h"
+
+namespace hemirad {
+namespace {
+
+struct Builder {
+    const GltfFile& gltf;
+    Scene scene = {};
+    std::optional<std::uint32_t> default_material = {};
+};
+
+/// A node in the world: transforms only ever multiply on the way down.
+struct PlacedNode {
+    std::size_t node;
+    glm::dmat4 world_from_node;
+};
+
+std::string node_path(std::size_t node) { return "nodes/" + std::to_string(node); }
+
+glm::dquat rotation(const GltfFile& gltf, std::size_t node) {
+    const auto& q = gltf.model.nodes[node].rotation;
+    if (q.empty()) return {1, 0, 0, 0};
+    const glm::dquat quaternion(q[3], q[0], q[1], q[2]);
+    const double length = glm::length(quaternion);
+    if (!(length > 0 && std::isfinite(length))) {
+        fail(gltf.file, node_path(node), "its rotation is not a quaternion");
+    }
+    return quaternion / length;
+}
+
+glm::dmat4 parent_from_node(const GltfFile& gltf, std::size_t index) {
+    const auto& node = gltf.model.nodes[index];
+    if (!node.matrix.empty()) return glm::make_mat4(node.matrix.data());
+    glm::dmat4 result = glm::mat4_cast(rotation(gltf, index));
+    for (int axis = 0; axis < 3 && !node.scale.empty(); ++axis) {
+        result[axis] *= node.scale[static_cast<std::size_t>(axis)];
+    }
+    if (!node.translation.empty()) {
+        result[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1);
+    }
+    return result;
+}
+
+/// glTF 2.0, sec. 3.5.2: the nodes form trees; a node has at most one parent.
+std::vector<int> parents(const GltfFile& gltf) {
+    std::vector<int> parent(gltf.model.nodes.size(), -1);
+    for (std::size_t i = 0; i < parent.size(); ++i) {
+        for (const int child : gltf.model.nodes[i].children) {
+            int& known = parent[static_cast<std::size_t>(child)];
+            if (known >= 0) {
+                fail(gltf.file, node_path(static_cast<std::size_t>(child)),
+                     "is the child of two nodes");
+            }
+            known = static_cast<int>(i);
+        }
+    }
+    return parent;
+}
+
+std::vector<std::size_t> roots(const std::vector<int>& parent) {
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i < parent.size(); ++i) {
+        if (parent[i] < 0) result.push_back(i);
+    }
+    return result;
+}
+
+/// With one parent to a node, what no root leads to is a cycle.
+void check_cycles(const GltfFile& gltf, const std::vector<int>& parent) {
+    std::vector<std::size_t> open = roots(parent);
+    std::vector<bool> reached(parent.size());
+    while (!open.empty()) {
+        const std::size_t node = open.back();
+        open.pop_back();
+        reached[node] = true;
+        const auto& children = gltf.model.nodes[node].children;
+        open.insert(open.end(), children.begin(), children.end());
+    }
+    const auto stray = std::find(reached.begin(), reached.end(), false);
+    if (stray == reached.end()) return;
+    fail(gltf.file, node_path(static_cast<std::size_t>(stray - reached.begin())),
+         "is its own ancestor");
+}
+
+/// The nodes to start from: the default scene's, else the first scene's, else all roots.
+std::vector<std::size_t> scene_nodes(const GltfFile& gltf, const std::vector<int>& parent) {
+    const auto& model = gltf.model;
+    if (model.defaultScene < 0) return roots(parent);
+    const auto& nodes = model.scenes[static_cast<std::size_t>(model.defaultScene)].nodes;
+    std::vector<std::size_t> result(nodes.begin(), nodes.end());
+    std::vector<bool> seen(parent.size());
+    for (const std::size_t node : result) {
+        if (parent[node] >= 0) fail(gltf.file, node_path(node), "is no root, but a scene's node");
+        if (seen[node]) fail(gltf.file, node_path(node), "is twice in the scene");
+        seen[node] = true;
+    }
+    return result;
+}
+
+std::vector<PlacedNode> place_nodes(const GltfFile& gltf) {
+    const std::vector<int> parent = parents(gltf);
+    check_cycles(gltf, parent);
+    std::vector<PlacedNode> open, placed;
+    const auto push = [&](const auto& nodes, const glm::dmat4& world_from_parent) {
+        for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+            const auto index = static_cast<std::size_t>(*node);
+            open.push_back({index, world_from_parent * parent_from_node(gltf, index)});
+        }
+    };
+    push(scene_nodes(gltf, parent), glm::dmat4(1));
+    while (!open.empty()) {
+        placed.push_back(open.back());
+        open.pop_back();
+        const PlacedNode node = placed.back();
+        push(gltf.model.nodes[node.node].children, node.world_from_node);
+    }
+    return placed;
+}
+
+std::uint32_t material_index(Builder& builder, const tinygltf::Primitive& primitive) {
+    if (primitive.material >= 0) return static_cast<std::uint32_t>(primitive.material);
+    if (!builder.default_material) {
+        builder.default_material = static_cast<std::uint32_t>(builder.scene.materials.size());
+        builder.scene.materials.push_back(default_gltf_material(builder.gltf, builder.scene));
+    }
+    return *builder.default_material;
+}
+
+std::uint32_t add_object(Builder& builder, std::size_t node) {
+    const auto& source = builder.gltf.model.nodes[node];
+    const auto& mesh = builder.gltf.model.meshes[static_cast<std::size_t>(source.mesh)];
+    const std::string& name = source.name.empty() ? mesh.name : source.name;
+    builder.scene.objects.push_back(name.empty() ? "node" + std::to_string(node) : printable(name));
+    return static_cast<std::uint32_t>(builder.scene.objects.size() - 1);
+}
+
+/// The first of the accessor's vertices in the scene, and how many there are.
+struct VertexRange {
+    std::size_t first, count;
+};
+
+VertexRange add_positions(Builder& builder, const PlacedNode& node, int accessor) {
+    const std::vector<double> values = read_accessor(builder.gltf, accessor, 3);
+    auto& positions = builder.scene.positions;
+    const VertexRange range{positions.size(), values.size() / 3};
+    if (range.first + range.count > std::numeric_limits<std::uint32_t>::max()) {
+        fail(builder.gltf.file, node_path(node.node), "the scene has too many vertices");
+    }
+    for (std::size_t i = 0; i < range.count; ++i) {
+        const glm::dvec4 local(glm::make_vec3(&values[3 * i]), 1);
+        const glm::dvec3 world(node.world_from_node * local);
+        if (!std::isfinite(world.x + world.y + world.z)) {
+            fail(builder.gltf.file, node_path(node.node),
+                 "vertex " + std::to_string(i) + " is not finite");
+        }
+        positions.push_back(world);
+    }
+    return range;
+}
+
+std::vector<std::size_t> corner_sequence(const Builder& builder, const std::string& path,
+                                         const tinygltf::Primitive& primitive, std::size_t count) {
+    if (primitive.indices < 0) {
+        std::vector<std::size_t> sequence(count);
+        std::iota(sequence.begin(), sequence.end(), 0);
+        return sequence;
+    }
+    const auto& accessor =
+        builder.gltf.model.accessors[static_cast<std::size_t>(primitive.indices)];
+    const int type = accessor.componentType;
+    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+        fail(builder.gltf.file, path, "its indices are not unsigned integers");
+    }
+    std::vector<std::size_t> sequence;
+    for (const double index : read_accessor(builder.gltf, primitive.indices, 1)) {
+        if (!(index < double(count))) {
+            fail(builder.gltf.file, path,
+                 "vertex index " + std::to_string(static_cast<std::uint64_t>(index)) +
+                     " is out of range, it has " + std::to_string(count) + " positions");
+        }
+        sequence.push_back(static_cast<std::size_t>(index));
+    }
+    return sequence;
+}
+
+using Triangle = std::array<std::size_t, 3>;
+
+/// Corners of triangle `i` as positions in the sequence, glTF 2.0, sec. 3.7.2.1.
+Triangle triangle_corners(int mode, std::size_t i) {
+    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) return {i, i + 1 + i % 2, i + 2 - i % 2};
+    if (mode == TINYGLTF_MODE_TRIANGLE_FAN) return {i + 1, i + 2, 0};
+    return {3 * i, 3 * i + 1, 3 * i + 2};
+}
+
+std::size_t triangle_count(const Builder& builder, const std::string& path, int mode,
+                           std::size_t corners) {
+    if (mode != TINYGLTF_MODE_TRIANGLES) return corners < 3 ? 0 : corners - 2;
+    if (corners % 3 != 0) {
+        fail(builder.gltf.file, path, std::to_string(corners) + " corners make no triangles");
+    }
+    return corners / 3;
+}
+
+/// True where a primitive brings faces.
+bool has_faces(Builder& builder, const std::string& path, const tinygltf::Primitive& primitive) {
+    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+        fail(builder.gltf.file, path, "mode " + std::to_string(primitive.mode));
+    }
+    if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+        warn(builder.scene, path, "points and lines have no area, skipped");
+        return false;
+    }
+    if (primitive.attributes.contains("POSITION")) return true;
+    warn(builder.scene, path, "has no positions, skipped");
+    return false;
+}
+
+struct PlacedPrimitive {
+    const tinygltf::Primitive& source;
+    std::string path;
+    std::uint32_t object;
+    VertexRange vertices;
+    bool mirrored;
+};
+
+void add_faces(Builder& builder, const PlacedPrimitive& primitive) {
+    const int mode = primitive.source.mode;
+    const auto sequence =
+        corner_sequence(builder, primitive.path, primitive.source, primitive.vertices.count);
+    const std::size_t count = triangle_count(builder, primitive.path, mode, sequence.size());
+    const std::uint32_t material = count > 0 ? material_index(builder, primitive.source) : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        Face face{{}, material, primitive.object};
+        for (const std::size_t corner : triangle_corners(mode, i)) {
+            face.vertices.push_back(
+                static_cast<std::uint32_t>(primitive.vertices.first + sequence[corner]));
+        }
+        if (primitive.mirrored) std::swap(face.vertices[1], face.vertices[2]);
+        builder.scene.faces.push_back(std::move(face));
+    }
+}
+
+void add_mesh(Builder& builder, const PlacedNode& node) {
+    const auto& source = builder.gltf.model.nodes[node.node];
+    if (source.mesh < 0) return;
+    if (source.skin >= 0) warn(builder.scene, node_path(node.node), "is read without its skin");
+    const bool mirrored = glm::determinant(glm::dmat3(node.world_from_node)) < 0;
+    const std::uint32_t object = add_object(builder, node.node);
+    const auto& primitives =
+        builder.gltf.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
+    std::map<int, VertexRange> ranges;  // primitives of a mesh often share their positions
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const std::string path =
+            "meshes/" + std::to_string(source.mesh) + "/primitives/" + std::to_string(i);
+        if (!has_faces(builder, path, primitives[i])) continue;
+        const int accessor = primitives[i].attributes.at("POSITION");
+        if (!ranges.contains(accessor)) {
+            ranges[accessor] = add_positions(builder, node, accessor);
+        }
+        add_faces(builder, {primitives[i], path, object, ranges[accessor], mirrored});
+    }
+}
+
+}  // namespace
+
+Scene read_gltf(const InputFile& file) {
+    const GltfFile gltf = load_gltf(file);
+    Builder builder{gltf};
+    builder.scene.file = file.name;
+    read_gltf_materials(gltf, builder.scene);
+    for (const PlacedNode& node : place_nodes(gltf)) add_mesh(builder, node);
+    return std::move(builder.scene);
+}
+
+}  // namespace hemirad

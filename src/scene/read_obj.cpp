@@ -1,0 +1,189 @@
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "scene/input_file.h"
+#include "scene/obj_numbers.h"
+
+namespace hemirad {
+namespace {
+
+// Of a face whose material is unknown: between black and white, so that light still bounces.
+constexpr double kUnknownReflectance = 0.5;
+
+struct ObjFile {
+    const InputFile& file;
+    ObjNumbers numbers;
+    Scene scene = {};
+
+    std::size_t vertex_count = 0;  // read so far: relative indices count back from here
+    std::size_t face_count = 0;
+    std::string object = {}, group = {}, material = {};
+    std::map<std::string, tinyobj::material_t> library = {};
+    std::map<std::pair<std::string, std::string>, std::uint32_t> object_indices = {};
+    std::map<std::string, std::uint32_t> material_indices = {};
+};
+
+std::string trimmed(const std::string& text) {
+    const auto begin = text.find_first_not_of(" \t");
+    if (begin == std::string::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+Material unknown_material(ObjFile& obj) {
+    const std::string stand_in =
+        "grey of reflectance " + number(kUnknownReflectance) + " stands in";
+    if (obj.material.empty()) {
+        warn(obj.scene, "faces without a material", stand_in);
+    } else {
+        warn(obj.scene, "material " + in_quotes(obj.material), "is not defined, " + stand_in);
+    }
+    const std::string name = obj.material.empty() ? "default" : printable(obj.material);
+    return {name, std::vector(3, kUnknownReflectance), std::vector(3, 0.0), false};
+}
+
+Material known_material(ObjFile& obj, const tinyobj::material_t& from) {
+    const std::string name = printable(from.name);
+    if (!from.diffuse_texname.empty()) {
+        warn(obj.scene, "material " + in_quotes(from.name), "map_Kd is not read, Kd stands alone");
+    }
+    return {name, {from.diffuse, from.diffuse + 3}, {from.emission, from.emission + 3}, false};
+}
+
+std::uint32_t material_index(ObjFile& obj) {
+    const auto next = static_cast<std::uint32_t>(obj.scene.materials.size());
+    const auto [entry, is_new] = obj.material_indices.try_emplace(obj.material, next);
+    if (is_new) {
+        const auto known = obj.library.find(obj.material);
+        obj.scene.materials.push_back(known == obj.library.end()
+                                          ? unknown_material(obj)
+                                          : known_material(obj, known->second));
+    }
+    return entry->second;
+}
+
+std::uint32_t object_index(ObjFile& obj) {
+    const auto next = static_cast<std::uint32_t>(obj.scene.objects.size());
+    const auto [entry, is_new] = obj.object_indices.try_emplace({obj.object, obj.group}, next);
+    if (is_new) {
+        const std::string& name = obj.group.empty() ? obj.object : obj.group;
+        obj.scene.objects.push_back(name.empty() ? "default" : printable(name));
+    }
+    return entry->second;
+}
+
+std::uint32_t vertex_index(const ObjFile& obj, int index) {
+    const auto count = static_cast<long long>(obj.numbers.positions.size());
+    const auto read = static_cast<long long>(obj.vertex_count);
+    const long long vertex = index < 0 ? read + index : index - 1LL;
+    if (vertex < 0 || vertex >= count) {
+        fail(obj.file, "line " + std::to_string(obj.numbers.face_lines[obj.face_count]),
+             "vertex " + std::to_string(index) + " is out of range, the file holds " +
+                 std::to_string(count));
+    }
+    return static_cast<std::uint32_t>(vertex);
+}
+
+void add_face(ObjFile& obj, const tinyobj::index_t* corners, int count) {
+    Face face;
+    face.vertices.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        face.vertices.push_back(vertex_index(obj, corners[i].vertex_index));
+    }
+    face.material = material_index(obj);
+    face.object = object_index(obj);
+    obj.scene.faces.push_back(std::move(face));
+    ++obj.face_count;
+}
+
+void set_group(ObjFile& obj, const char** names, int count) {
+    obj.group.clear();
+    for (int i = 0; i < count; ++i) obj.group += (i > 0 ? " " : "") + std::string(names[i]);
+}
+
+void read_library(ObjFile& obj, const std::string& reference, const std::filesystem::path& path) {
+    const InputFile file = read_input_file(path);
+    const std::string text = unfold_lines(file.bytes);
+    check_mtl_numbers(file, text);
+
+    std::map<std::string, int> indices;
+    std::vector<tinyobj::material_t> materials;
+    std::istringstream stream(text);
+    std::string warning, error;
+    tinyobj::LoadMtl(&indices, &materials, &stream, &warning, &error);
+    if (!error.empty()) fail(obj.file, "mtllib " + in_quotes(reference), printable(error));
+    for (const auto& [name, index] : indices) {
+        const std::string key = trimmed(name);  // empty: lines before any newmtl
+        if (!key.empty()) obj.library.emplace(key, materials[static_cast<std::size_t>(index)]);
+    }
+}
+
+/// tinyobjloader's hook for `mtllib`.
+class LibraryReader : public tinyobj::MaterialReader {
+  public:
+    explicit LibraryReader(ObjFile& obj) : obj_(obj) {}
+
+    bool operator()(const std::string& reference, std::vector<tinyobj::material_t>*,
+                    std::map<std::string, int>*, std::string*, std::string*) override {
+        const std::string element = "mtllib " + in_quotes(reference);
+        const auto path = resolve_reference(obj_.file, trimmed(reference));
+        if (!path) fail(obj_.file, element, "must be a file in the scene's folder");
+        if (std::filesystem::exists(*path)) {
+            read_library(obj_, reference, *path);
+        } else {
+            warn(obj_.scene, element, "does not exist");
+        }
+        // Never "found": tinyobjloader would read only the first file of the line.
+        return false;
+    }
+
+  private:
+    ObjFile& obj_;
+};
+
+ObjFile& obj_of(void* user_data) { return *static_cast<ObjFile*>(user_data); }
+
+tinyobj::callback_t callbacks() {
+    tinyobj::callback_t callback;
+    callback.vertex_cb = [](void* user_data, double, double, double, double) {
+        ++obj_of(user_data).vertex_count;
+    };
+    callback.index_cb = [](void* user_data, tinyobj::index_t* corners, int count) {
+        add_face(obj_of(user_data), corners, count);
+    };
+    callback.usemtl_cb = [](void* user_data, const char* name, int) {
+        obj_of(user_data).material = trimmed(name);
+    };
+    callback.group_cb = [](void* user_data, const char** names, int count) {
+        set_group(obj_of(user_data), names, count);
+    };
+    callback.object_cb = [](void* user_data, const char* name) {
+        obj_of(user_data).object = trimmed(name);
+        obj_of(user_data).group.clear();
+    };
+    return callback;
+}
+
+}  // namespace
+
+Scene read_obj(const InputFile& file) {
+    const std::string text = unfold_lines(file.bytes);
+    ObjFile obj{.file = file, .numbers = read_obj_numbers(file, text)};
+    obj.scene.file = file.name;
+    obj.scene.bands = {"R", "G", "B"};
+
+    LibraryReader library(obj);
+    std::istringstream stream(text);
+    std::string warning, error;
+    tinyobj::LoadObjWithCallback(stream, callbacks(), &obj, &library, &warning, &error);
+    if (!error.empty()) fail(file, "OBJ", printable(error));
+    obj.scene.positions = std::move(obj.numbers.positions);
+    return std::move(obj.scene);
+}
+
+}  // namespace hemirad
