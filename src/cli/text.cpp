@@ -1,6 +1,7 @@
 #include "cli/text.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -40,6 +41,12 @@ std::string escaped(std::string_view text) {
         }
     }
     return result;
+}
+
+std::string number_text(double number) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+    return {text.data(), end};
 }
 
 std::string bytes_text(std::uint64_t bytes) {

@@ -10,6 +10,9 @@ namespace hemirad {
 /// arguments must not steer a terminal or break a line in two.
 std::string escaped(std::string_view text);
 
+/// The shortest text that reads back as the same number.
+std::string number_text(double number);
+
 /// 1536 -> "1.5 KiB".
 std::string bytes_text(std::uint64_t bytes);
 

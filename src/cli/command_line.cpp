@@ -1,0 +1,61 @@
+#include "cli/command_line.h"
+
+#include <iostream>
+
+#include "cli/devices.h"
+#include "cli/exit_codes.h"
+#include "cli/info.h"
+#include "cli/solve.h"
+#include "cli/text.h"
+#include "errors.h"
+
+namespace hemirad {
+namespace {
+
+/// CLI11 would name every stray argument in one breath, the values of unknown options included.
+void reject_stray_arguments(const CLI::App& app) {
+    const auto stray = app.remaining(true);
+    if (stray.empty()) return;
+    const auto commands = app.get_subcommands();
+    const std::string name = commands.empty() ? "" : " " + commands.front()->get_name();
+    const bool is_option = stray.front().starts_with('-');
+    const std::string kind = is_option          ? "unknown option"
+                             : commands.empty() ? "unknown command"
+                                                : "one argument too many,";
+    throw InputError("hemirad: " + kind + " \"" + escaped(stray.front()) + "\"; see hemirad" +
+                     name + " --help");
+}
+
+void flush(std::ostream& out) {
+    if (!out.flush()) throw OutputError("standard output: could not be written");
+}
+
+}  // namespace
+
+CommandLine::CommandLine()
+    : app_("Progressive radiosity by hemispherical projection, on OpenCL devices", "hemirad") {
+    app_.set_version_flag("--version", std::string("hemirad ") + HEMIRAD_VERSION);
+    app_.allow_extras();
+    app_.get_formatter()->column_width(34);
+    add_solve(app_, chosen_);
+    add_info(app_, chosen_);
+    add_devices(app_, chosen_);
+    for (auto* const command : app_.get_subcommands({})) command->allow_extras();
+}
+
+int CommandLine::run(int argc, const char* const* argv) {
+    app_.parse(argc, argv);
+    reject_stray_arguments(app_);
+    if (!chosen_) throw InputError("hemirad: no command given; see hemirad --help");
+    const int exit_code = chosen_();
+    flush(std::cout);
+    return exit_code;
+}
+
+int CommandLine::answer(const CLI::Success& question) const {
+    app_.exit(question, std::cout, std::cerr);
+    flush(std::cout);
+    return kDone;
+}
+
+}  // namespace hemirad

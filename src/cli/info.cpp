@@ -1,0 +1,129 @@
+#include "cli/info.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "cli/exit_codes.h"
+#include "cli/memory.h"
+#include "cli/mesh_options.h"
+#include "cli/solve_options.h"
+#include "cli/summary.h"
+#include "cli/text.h"
+#include "mp1map/device.h"
+#include "mp1map/pe_array.h"
+#include "scene/read_scene.h"
+#include "solver/bands.h"
+
+namespace hemirad {
+namespace {
+
+struct InfoOptions {
+    std::filesystem::path scene;
+    MeshSettings mesh;
+    std::uint32_t resolution = SolverSettings{}.resolution;
+};
+
+void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh, double patch_size) {
+    const auto count = [&](auto matches) {
+        return std::count_if(mesh.patches.begin(), mesh.patches.end(), matches);
+    };
+    const auto triangles = count([](const Patch& patch) { return patch.is_triangle(); });
+    out << "file         " << escaped(scene.file) << '\n'
+        << "faces        " << mesh.face_count << " (" << mesh.dropped_degenerate
+        << " degenerate and " << mesh.dropped_duplicate << " duplicate ones dropped)\n"
+        << "objects      " << scene.objects.size() << '\n'
+        << "materials    " << scene.materials.size() << '\n'
+        << "surfaces     " << mesh.surfaces.size() << '\n'
+        << "patches      " << mesh.patches.size() << " (" << triangles << " of them triangles), "
+        << "--patch-size " << number_text(patch_size) << '\n';
+}
+
+std::string object_names(const Mesh& mesh, const Part& part) {
+    constexpr std::size_t kInFull = 3;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(part.objects.size(), kInFull); ++i)
+        names += (i == 0 ? "" : ", ") + escaped(mesh.objects[part.objects[i]]);
+    if (part.objects.size() > kInFull)
+        names += " and " + std::to_string(part.objects.size() - kInFull) + " more";
+    return names;
+}
+
+/// Why a part got the backs it has, sec. 1.5.1 being right for closed solids only.
+std::string backs_of(const Part& part) {
+    std::string text = part.closed ? "closed" : "open";
+    if (part.doubled) text += ", double-sided";
+    if (part.back_patches == 0) return text + ", no backs";
+    return text + ", " + counted(part.back_patches, "back");
+}
+
+void print_parts(std::ostream& out, const Mesh& mesh, Backfaces backfaces) {
+    constexpr std::size_t kInFull = 40;
+    out << "parts        " << mesh.parts.size() << ", --backfaces " << name_of(backfaces) << '\n';
+    for (std::size_t i = 0; i < std::min(mesh.parts.size(), kInFull); ++i) {
+        const auto& part = mesh.parts[i];
+        out << "  " << object_names(mesh, part) << ": " << counted(part.face_count, "face") << ", "
+            << backs_of(part) << '\n';
+    }
+    if (mesh.parts.size() > kInFull) out << "  and " << mesh.parts.size() - kInFull << " more\n";
+    out << "scene        "
+        << (mesh.closed ? "closed: no light can escape\n" : "open: light may escape\n");
+}
+
+void print_bands(std::ostream& out, const Mesh& mesh) {
+    const auto plan = plan_bands(mesh);
+    out << "bands        ";
+    for (std::size_t band = 0; band < mesh.bands.size(); ++band)
+        out << (band == 0 ? "" : " ") << escaped(mesh.bands[band]);
+    out << "; solved: " << plan.solved.size();
+    if (plan.solved.size() < mesh.bands.size())
+        out << ", since others have the same reflectances and proportional emission";
+    out << '\n';
+    for (std::size_t band = 0; band < mesh.bands.size(); ++band)
+        out << "  " << escaped(mesh.bands[band]) << ": emits "
+            << number_text(emitted_flux(mesh, band)) << " W, solved as "
+            << escaped(mesh.bands[plan.solved[plan.solution[band]]]) << '\n';
+}
+
+void print_memory(std::ostream& out, const Mesh& mesh, std::uint32_t resolution) {
+    out << "memory       ";
+    if (mp1map::list_devices().empty()) {
+        out << "no device to estimate it for\n";
+        return;
+    }
+    const auto device = mp1map::Device::open("");
+    const auto array = mp1map::fit_pe_array(device.summary(), {});
+    out << bytes_text(device_bytes(mesh, resolution, array)) << " of "
+        << bytes_text(device.summary().global_memory) << " on " << escaped(device.summary().name)
+        << " at --resolution " << resolution << '\n';
+}
+
+int print_info(InfoOptions options, std::ostream& out) {
+    const auto scene = read_scene(options.scene);
+    if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
+    const auto mesh = build_mesh(scene, options.mesh);
+    print_contents(out, scene, mesh, options.mesh.patch_size);
+    print_parts(out, mesh, options.mesh.backfaces);
+    print_bands(out, mesh);
+    print_memory(out, mesh, options.resolution);
+    const auto warnings = warnings_of(scene, mesh);
+    out << "warnings     " << warnings.size() << '\n';
+    for (const auto& warning : warnings) out << "  " << escaped(warning) << '\n';
+    return kDone;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Command& chosen) {
+    auto* const command =
+        app.add_subcommand("info", "what a scene holds and what the solver will therefore build");
+    const auto options = std::make_shared<InfoOptions>();
+    add_scene(*command, options->scene);
+    add_mesh_options(*command, options->mesh);
+    add_resolution(*command, options->resolution);
+    command->callback(
+        [&chosen, options] { chosen = [options] { return print_info(*options, std::cout); }; });
+}
+
+}  // namespace hemirad

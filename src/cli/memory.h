@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+#include "mp1map/pe_array.h"
+#include "scene/mesh.h"
+
+namespace hemirad {
+
+/// Bytes that solving a mesh will hold on the device.
+std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution,
+                           const mp1map::PeArray& array);
+
+}  // namespace hemirad

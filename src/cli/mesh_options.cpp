@@ -1,0 +1,30 @@
+#include "cli/mesh_options.h"
+
+namespace hemirad {
+namespace {
+
+const std::vector<std::string_view> kBackfaces{"auto", "block", "cull"};
+
+}  // namespace
+
+void add_mesh_options(CLI::App& command, MeshSettings& settings) {
+    add_value(
+        command,
+        {"--patch-size", "METRES",
+         "longest edge of a patch; inf: every polygon is one patch [from the scene's extent]"},
+        [&](const OptionValue& value) { settings.patch_size = positive_or_infinite(value); });
+    add_value(command,
+              {"--backfaces", "auto|block|cull",
+               "whether a patch seen from behind hides what lies beyond [auto: where it is open]"},
+              [&](const OptionValue& value) {
+                  settings.backfaces = static_cast<Backfaces>(one_of(value, kBackfaces));
+              });
+    add_value(command, {"--max-reflectance", "R", "reflectances above R are limited to it [0.98]"},
+              [&](const OptionValue& value) { settings.max_reflectance = fraction(value); });
+}
+
+std::string name_of(Backfaces backfaces) {
+    return std::string(kBackfaces[static_cast<std::size_t>(backfaces)]);
+}
+
+}  // namespace hemirad

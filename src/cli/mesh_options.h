@@ -1,0 +1,14 @@
+#pragma once
+
+#include "cli/options.h"
+#include "scene/mesh.h"
+
+namespace hemirad {
+
+/// --patch-size, --backfaces and --max-reflectance.
+void add_mesh_options(CLI::App& command, MeshSettings& settings);
+
+/// The word that --backfaces takes.
+std::string name_of(Backfaces backfaces);
+
+}  // namespace hemirad

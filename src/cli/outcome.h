@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mp1map/device.h"
+#include "mp1map/pe_array.h"
+#include "solver/solution.h"
+#include "solver/solver.h"
+
+namespace hemirad {
+
+/// What a solve came to, for the summary and the report.
+struct Outcome {
+    struct Seconds {
+        double total = 0, build_kernels = 0, solve = 0, lightmap = 0, per_shot_median = 0;
+        std::map<std::string, std::pair<double, std::uint64_t>> per_kernel;  ///< and launches
+    };
+
+    Stop stop = Stop::converged;
+    Solution solution;
+    Closure closure;
+    Seconds seconds;
+    mp1map::DeviceSummary device;
+    mp1map::PeArray pe_array;
+    std::uint64_t device_bytes = 0;
+    std::vector<std::filesystem::path> outputs;
+    std::vector<std::string> warnings;
+};
+
+}  // namespace hemirad

@@ -1,0 +1,72 @@
+#include "cli/outputs.h"
+
+#include "cli/text.h"
+#include "errors.h"
+#include "lightmap/atomic_file.h"
+#include "lightmap/rasterize.h"
+#include "lightmap/write_exr.h"
+#include "lightmap/write_preview.h"
+
+namespace hemirad {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Viewers go by a file's ending. Devices and pipes have none.
+void check_ending(std::string_view option, const fs::path& file, std::string_view ending) {
+    if (file.extension() == ending || (fs::exists(file) && !fs::is_regular_file(file))) return;
+    reject({option, file.native()}, "a name ending in " + std::string(ending));
+}
+
+void check_distinct(const SolveOptions& options) {
+    std::vector<fs::path> files = output_files(options);
+    if (options.report) files.push_back(*options.report);
+    std::vector<fs::path> taken{fs::weakly_canonical(options.scene)};
+    for (const auto& file : files) {
+        const auto place = fs::weakly_canonical(file);
+        for (const auto& other : taken)
+            if (place == other && !(fs::exists(place) && !fs::is_regular_file(place)))
+                throw InputError("hemirad: " + escaped(file.string()) + ": would overwrite " +
+                                 (other == taken.front() ? "the scene" : "another output"));
+        taken.push_back(place);
+    }
+}
+
+std::string settings_text(const SolveOptions& options) {
+    std::string text;
+    for (const auto& [name, value] : deciding_options(options))
+        text += (text.empty() ? "" : " ") + name + " " + value;
+    return text;
+}
+
+}  // namespace
+
+std::vector<fs::path> output_files(const SolveOptions& options) {
+    std::vector<fs::path> files{options.output};
+    if (options.preview) files.push_back(*options.preview);
+    if (options.faces) files.push_back(*options.faces);
+    return files;
+}
+
+void check_outputs(const SolveOptions& options) {
+    check_ending("--output", options.output, ".exr");
+    if (options.preview) check_ending("--preview", *options.preview, ".png");
+    check_distinct(options);
+    for (const auto& file : output_files(options)) check_writable(file);
+    if (options.report) check_writable(*options.report);
+}
+
+void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
+                   const Solution& solution) {
+    const auto lightmap = rasterize(mesh, solution, layout, options.quantity);
+    auto attributes = describe(solution, options.quantity);
+    attributes.push_back({"version", std::string(HEMIRAD_VERSION)});
+    attributes.push_back({"scene", options.scene.filename().string()});
+    attributes.push_back({"resolution", double(options.solver.resolution)});
+    attributes.push_back({"shooter_samples", double(options.solver.shooter_samples)});
+    attributes.push_back({"settings", settings_text(options)});
+    write_exr(options.output, lightmap, attributes, options.pixels);
+    if (options.preview) write_preview(*options.preview, lightmap);
+}
+
+}  // namespace hemirad

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/solve_options.h"
+#include "lightmap/chart_layout.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "solver/solution.h"
+
+namespace hemirad {
+
+/// Every file that the options ask for, in the order of writing; the report comes last.
+std::vector<std::filesystem::path> output_files(const SolveOptions& options);
+
+/// Before the work begins: throws InputError where two outputs are one file, or one is the scene,
+/// or a name ends unfittingly; OutputError where one could not be written.
+void check_outputs(const SolveOptions& options);
+
+/// Lightmap and preview of the solution so far.
+void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
+                   const Solution& solution);
+
+}  // namespace hemirad

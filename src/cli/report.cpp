@@ -1,0 +1,105 @@
+#include "cli/report.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/sha256.h"
+#include "lightmap/atomic_file.h"
+
+namespace hemirad {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json scene_json(const Mesh& mesh) {
+    // A patch is its own only element until elements exist.
+    return {{"patches", mesh.patches.size()},
+            {"elements", mesh.patches.size()},
+            {"bands", mesh.bands},
+            {"closed", mesh.closed}};
+}
+
+Json device_json(const Outcome& outcome) {
+    const auto& array = outcome.pe_array;
+    const auto shape = [](std::uint32_t width, std::uint32_t height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    return {{"name", outcome.device.name},
+            {"compute_units", outcome.device.compute_units},
+            {"pe", shape(array.width, array.height)},
+            {"lanes", array.lanes},
+            {"tile", shape(array.tile_width, array.tile_height)}};
+}
+
+Json settings_json(const SolveOptions& options) {
+    Json settings = Json::object();
+    for (const auto& [name, value] : deciding_options(options)) {
+        const auto number = Json::parse(value, nullptr, false);
+        settings[name.substr(2)] = number.is_number() ? number : Json(value);
+    }
+    return settings;
+}
+
+Json ledger_json(const Solution& solution) {
+    Json bands = Json::object();
+    for (std::size_t band = 0; band < solution.bands.size(); ++band) {
+        const auto& ledger = solution.ledger[band];
+        bands[solution.bands[band]] = {{"emitted", ledger.emitted},
+                                       {"absorbed", ledger.absorbed},
+                                       {"escaped", ledger.escaped},
+                                       {"unshot", ledger.unshot},
+                                       {"residual", ledger.residual()}};
+    }
+    return bands;
+}
+
+Json seconds_json(const Outcome::Seconds& seconds) {
+    Json stages = Json::object();
+    for (const auto& [kernel, spent] : seconds.per_kernel) stages[kernel] = spent.first;
+    return {{"total", seconds.total},
+            {"build_kernels", seconds.build_kernels},
+            {"solve", seconds.solve},
+            {"lightmap", seconds.lightmap},
+            {"per_shot_median", seconds.per_shot_median},
+            {"per_stage", stages}};
+}
+
+Json outputs_json(const Outcome& outcome) {
+    Json outputs = Json::array();
+    for (const auto& file : outcome.outputs) {
+        const bool readable = std::filesystem::is_regular_file(file);
+        outputs.push_back(
+            {{"file", file.string()}, {"sha256", readable ? Json(sha256(file)) : Json(nullptr)}});
+    }
+    return outputs;
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& path, const SolveOptions& options, const Mesh& mesh,
+                  const Outcome& outcome) {
+    const Json report = {
+        {"scene", scene_json(mesh)},
+        {"device", device_json(outcome)},
+        {"settings", settings_json(options)},
+        {"shots", outcome.solution.shots},
+        {"unshot_fraction", outcome.solution.unshot_fraction},
+        {"ledger", ledger_json(outcome.solution)},
+        {"closure", {{"min", outcome.closure.least}, {"max", outcome.closure.most}}},
+        {"seconds", seconds_json(outcome.seconds)},
+        {"peak_memory_bytes", peak_memory_bytes()},
+        {"outputs", outputs_json(outcome)},
+        {"warnings", outcome.warnings}};
+    // Names in a scene may be in any encoding; JSON is UTF-8.
+    const auto text = report.dump(2, ' ', false, Json::error_handler_t::replace);
+    write_atomically(path, [&](std::ostream& out) { out << text << '\n'; });
+}
+
+}  // namespace hemirad

@@ -1,0 +1,153 @@
+#include "cli/solve_options.h"
+
+#include <cmath>
+#include <limits>
+
+#include "cli/mesh_options.h"
+#include "cli/text.h"
+
+namespace hemirad {
+namespace {
+
+const std::vector<std::string_view> kQuantities{"irradiance", "radiosity"};
+constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
+
+void add_file_options(CLI::App& command, SolveOptions& options) {
+    add_scene(command, options.scene);
+    add_text(command, {"-o,--output", "FILE.exr", "the lightmap [SCENE's name, here]"},
+             options.output);
+    add_text(command, {"--preview", "FILE.png", "the lightmap tone-mapped, to look at"},
+             options.preview);
+    add_text(command, {"--faces", "FILE.csv", "the solution as numbers, a row a polygon"},
+             options.faces);
+    add_text(command, {"--report", "FILE.json", "what happened, machine-readable"}, options.report);
+}
+
+void add_accuracy_options(CLI::App& command, SolveOptions& options) {
+    auto& solver = options.solver;
+    add_resolution(command, solver.resolution);
+    add_value(command,
+              {"--shooter-samples", "M|auto", "hemispheres a shooting patch, M x M [auto]"},
+              [&](const OptionValue& value) {
+                  solver.shooter_samples =
+                      value.text == "auto" ? SolverSettings{}.shooter_samples
+                                           : static_cast<std::uint32_t>(whole_number(value, 1, 64));
+              });
+    add_mesh_options(command, options.mesh);
+    add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch]"},
+              [&](const OptionValue& value) { options.texel_size = positive_number(value); });
+}
+
+void add_stop_options(CLI::App& command, SolverSettings& solver) {
+    add_value(command, {"--tolerance", "T", "stop where unshot / emitted flux is below T [1e-3]"},
+              [&](const OptionValue& value) { solver.tolerance = fraction(value); });
+    add_value(command, {"--max-shots", "N", "stop after N shots"},
+              [&](const OptionValue& value) { solver.max_shots = whole_number(value, 1, kAny); });
+    add_value(command, {"--time-limit", "SECONDS", "stop after so long"},
+              [&](const OptionValue& value) { solver.time_limit = positive_number(value); });
+}
+
+SnapshotInterval snapshot_interval(const OptionValue& value) {
+    if (!value.text.ends_with('s')) return {whole_number(value, 1, kAny), 0};
+    const OptionValue seconds{value.option, value.text.substr(0, value.text.size() - 1)};
+    return {0, positive_number(seconds)};
+}
+
+void add_picture_options(CLI::App& command, SolveOptions& options) {
+    add_value(command,
+              {"--quantity", "irradiance|radiosity", "what the lightmap holds, W/m^2 [irradiance]"},
+              [&](const OptionValue& value) {
+                  options.quantity = static_cast<Quantity>(one_of(value, kQuantities));
+              });
+    command.add_flag_callback(
+        "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
+    add_value(command,
+              {"--snapshot-every", "SHOTS|SECONDSs", "write the picture so far, again and again"},
+              [&](const OptionValue& value) { options.snapshots = snapshot_interval(value); });
+}
+
+std::uint32_t lanes(const OptionValue& value) {
+    constexpr std::uint32_t kLanes[] = {1, 4, 8, 16};
+    return kLanes[one_of(value, {"1", "4", "8", "16"})];
+}
+
+void add_machine_options(CLI::App& command, SolveOptions& options) {
+    auto& array = options.solver.pe_array;
+    add_text(command,
+             {"--device", "NAME|INDEX", "part of a name, or index, of hemirad devices [PoCL CPU]"},
+             options.device);
+    add_value(command, {"--compute-units", "K", "of the device's [all]"},
+              [&](const OptionValue& value) {
+                  options.compute_units = static_cast<std::uint32_t>(whole_number(value, 1, 65536));
+              });
+    add_value(command, {"--pe", "WxH", "work-items of the PE array [fit for the device]"},
+              [&](const OptionValue& value) {
+                  const auto [width, height] = extent(value);
+                  array.width = width;
+                  array.height = height;
+              });
+    add_value(command, {"--lanes", "1|4|8|16", "proxels a PE takes at once [fit for the device]"},
+              [&](const OptionValue& value) { array.lanes = lanes(value); });
+    add_value(command,
+              {"--tile", "WxH", "proxels a work-group keeps in local memory [fit for the device]"},
+              [&](const OptionValue& value) {
+                  const auto [width, height] = extent(value);
+                  array.tile_width = width;
+                  array.tile_height = height;
+              });
+    add_text(command, {"--kernels", "FOLDER", "read the kernels from here, not from the program"},
+             options.solver.kernels_dir);
+}
+
+void add_talk_options(CLI::App& command, SolveOptions& options) {
+    auto* const quiet =
+        command.add_flag("-q,--quiet", options.quiet, "say nothing but warnings and faults");
+    command.add_flag("-v,--verbose", options.verbose, "say more")->excludes(quiet);
+    command.add_flag("--no-progress", options.no_progress, "no progress bar or lines");
+}
+
+}  // namespace
+
+void add_solve_options(CLI::App& command, SolveOptions& options) {
+    add_file_options(command, options);
+    add_accuracy_options(command, options);
+    add_stop_options(command, options.solver);
+    add_picture_options(command, options);
+    add_machine_options(command, options);
+    add_talk_options(command, options);
+}
+
+void add_scene(CLI::App& command, std::filesystem::path& scene) {
+    command.add_option("SCENE", scene, "a .gltf, .glb or .obj file")->required()->type_name("");
+}
+
+void add_resolution(CLI::App& command, std::uint32_t& resolution) {
+    add_value(command, {"--resolution", "N", "N x N proxels on the square around the disk [512]"},
+              [&](const OptionValue& value) {
+                  resolution = static_cast<std::uint32_t>(whole_number(value, 16, 8192));
+              });
+}
+
+std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options) {
+    const auto& solver = options.solver;
+    std::vector<std::pair<std::string, std::string>> result{
+        {"--resolution", std::to_string(solver.resolution)},
+        {"--shooter-samples", std::to_string(solver.shooter_samples)},
+        {"--patch-size", number_text(options.mesh.patch_size)},
+        {"--texel-size", number_text(options.texel_size)},
+        {"--backfaces", name_of(options.mesh.backfaces)},
+        {"--max-reflectance", number_text(options.mesh.max_reflectance)},
+        {"--tolerance", number_text(solver.tolerance)},
+        {"--quantity", name_of(options.quantity)}};
+    if (solver.max_shots != SolverSettings{}.max_shots)
+        result.emplace_back("--max-shots", std::to_string(solver.max_shots));
+    if (std::isfinite(solver.time_limit))
+        result.emplace_back("--time-limit", number_text(solver.time_limit));
+    return result;
+}
+
+std::string name_of(Quantity quantity) {
+    return std::string(kQuantities[static_cast<std::size_t>(quantity)]);
+}
+
+}  // namespace hemirad

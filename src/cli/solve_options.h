@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/options.h"
+#include "lightmap/lightmap.h"
+#include "lightmap/write_exr.h"
+#include "scene/mesh.h"
+#include "solver/solver.h"
+
+namespace hemirad {
+
+/// How often the picture so far is written; both 0: not.
+struct SnapshotInterval {
+    std::uint64_t shots = 0;
+    double seconds = 0;
+};
+
+struct SolveOptions {
+    std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
+    std::optional<std::filesystem::path> preview, faces, report;
+    MeshSettings mesh;
+    SolverSettings solver;
+    double texel_size = 0;  ///< m; 0: default_texel_size()
+    Quantity quantity = Quantity::irradiance;
+    PixelType pixels = PixelType::float32;
+    std::string device;  ///< as mp1map::Device::open takes it
+    std::uint32_t compute_units = 0;
+    SnapshotInterval snapshots;
+    bool quiet = false, verbose = false, no_progress = false;
+};
+
+void add_solve_options(CLI::App& command, SolveOptions& options);
+
+/// SCENE, of solve and info.
+void add_scene(CLI::App& command, std::filesystem::path& scene);
+
+/// --resolution, of solve and info.
+void add_resolution(CLI::App& command, std::uint32_t& resolution);
+
+/// The options that decide on the result, as name and value, defaults resolved: the machine model
+/// and the device are not among them, since they change no bit.
+std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options);
+
+std::string name_of(Quantity quantity);
+
+}  // namespace hemirad

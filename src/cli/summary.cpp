@@ -1,0 +1,90 @@
+#include "cli/summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "cli/text.h"
+
+namespace hemirad {
+namespace {
+
+template <typename... Values>
+void print(std::ostream& out, const char* format, Values... values) {
+    std::array<char, 256> line{};
+    std::snprintf(line.data(), line.size(), format, values...);
+    out << line.data();
+}
+
+std::string ending(const SolveOptions& options, const Outcome& outcome) {
+    switch (outcome.stop) {
+        case Stop::converged:
+            return "converged, below --tolerance " + number_text(options.solver.tolerance);
+        case Stop::max_shots:
+            return "stopped by --max-shots " + std::to_string(options.solver.max_shots);
+        case Stop::time_limit:
+            return "stopped by --time-limit " + number_text(options.solver.time_limit);
+        case Stop::interrupted:
+            return "interrupted; the picture so far is valid";
+    }
+    return {};
+}
+
+void print_ledger(std::ostream& out, const Solution& solution) {
+    print(out, "%-8s %12s %12s %12s %12s %10s\n", "band", "emitted W", "absorbed W", "escaped W",
+          "unshot W", "residual");
+    for (std::size_t band = 0; band < solution.bands.size(); ++band) {
+        const auto& ledger = solution.ledger[band];
+        print(out, "%-8s %12.6g %12.6g %12.6g %12.6g %10.2g\n",
+              escaped(solution.bands[band]).c_str(), ledger.emitted, ledger.absorbed,
+              ledger.escaped, ledger.unshot, ledger.residual());
+    }
+}
+
+void print_kernels(std::ostream& out, const Outcome& outcome) {
+    for (const auto& [kernel, spent] : outcome.seconds.per_kernel)
+        print(out, "%-24s %10.3f s %10llu launches\n", kernel.c_str(), spent.first,
+              static_cast<unsigned long long>(spent.second));
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const Scene& scene, const Mesh& mesh) {
+    auto warnings = scene.warnings;
+    for (const auto& warning : mesh.warnings)
+        if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
+            warnings.push_back(warning);
+    return warnings;
+}
+
+void print_warnings(std::ostream& out, const std::vector<std::string>& warnings) {
+    for (const auto& warning : warnings) out << "warning: " << escaped(warning) << '\n';
+}
+
+void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh,
+                const mp1map::DeviceSummary& device, const mp1map::PeArray& array) {
+    out << escaped(options.scene.filename().string()) << ": "
+        << counted(mesh.patches.size(), "patch", "patches") << " on "
+        << counted(mesh.surfaces.size(), "surface") << ", " << (mesh.closed ? "closed" : "open")
+        << '\n'
+        << escaped(device.name) << ": " << counted(device.compute_units, "compute unit") << ", "
+        << array.description() << '\n';
+}
+
+void print_summary(std::ostream& out, const SolveOptions& options, const Outcome& outcome) {
+    const auto& solution = outcome.solution;
+    out << ending(options, outcome) << ": " << counted(solution.shots, "shot") << " in "
+        << duration_text(outcome.seconds.solve);
+    print(out, ", unshot %.3g %%\n", 100 * solution.unshot_fraction);
+    print_ledger(out, solution);
+    print(out, "closure %.9g to %.9g, %s in all\n", outcome.closure.least, outcome.closure.most,
+          duration_text(outcome.seconds.total).c_str());
+    if (options.verbose) {
+        out << "device memory " << bytes_text(outcome.device_bytes) << ", kernels built in "
+            << duration_text(outcome.seconds.build_kernels) << '\n';
+        print_kernels(out, outcome);
+    }
+    for (const auto& file : outcome.outputs) out << "wrote " << escaped(file.string()) << '\n';
+}
+
+}  // namespace hemirad

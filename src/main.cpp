@@ -1,0 +1,58 @@
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "cli/command_line.h"
+#include "cli/exit_codes.h"
+#include "cli/text.h"
+#include "errors.h"
+#include "mp1map/device.h"
+
+namespace {
+
+int complain(std::string_view fault, int exit_code) {
+    std::cerr << hemirad::escaped(fault) << '\n';
+    return exit_code;
+}
+
+/// A device's fault may bring the log of its compiler after the first line.
+int complain_with_log(std::string_view fault) {
+    const auto first_line = fault.substr(0, fault.find('\n'));
+    complain("hemirad: " + std::string(first_line), hemirad::kDeviceFailed);
+    if (first_line.size() < fault.size()) std::cerr << fault.substr(first_line.size() + 1) << '\n';
+    return hemirad::kDeviceFailed;
+}
+
+int run(int argc, const char* const* argv) {
+    hemirad::CommandLine command_line;
+    try {
+        return command_line.run(argc, argv);
+    } catch (const CLI::Success& question) {  // --help and --version come as exceptions
+        return command_line.answer(question);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace std::string_literals;
+    try {
+        return run(argc, argv);
+    } catch (const CLI::ParseError& fault) {
+        return complain("hemirad: "s + fault.what(), hemirad::kWrongUse);
+    } catch (const hemirad::InputError& fault) {
+        return complain(fault.what(), hemirad::kWrongUse);
+    } catch (const hemirad::OutputError& fault) {
+        return complain(fault.what(), hemirad::kNotWritten);
+    } catch (const mp1map::NoSuchDevice& fault) {
+        return complain("hemirad: "s + fault.what(), hemirad::kWrongUse);
+    } catch (const mp1map::DeviceError& fault) {
+        return complain_with_log(fault.what());
+    } catch (const std::bad_alloc&) {
+        return complain("hemirad: out of memory", hemirad::kWrongUse);
+    } catch (const std::exception& fault) {
+        return complain("hemirad: "s + fault.what(), hemirad::kWrongUse);
+    }
+}
