@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
+
+#include "errors.h"
+#include "scene/cut_surface.h"
+#include "scene/edges.h"
+#include "scene/find_parts.h"
+#include "scene/flat_faces.h"
+#include "scene/group_flats.h"
+#include "scene/lay_grid.h"
+#include "scene/limit_reflectance.h"
+#include "scene/mesh.h"
+#include "scene/outlines.h"
+#include "scene/precision.h"
+#include "scene/vertex_welder.h"
+
+namespace hemirad {
+namespace {
+
+enum class Back { none, absorber, mirror };
+
+/// Turns a scene into a mesh, a stage a function, in the order of `run`.
+class Mesher {
+  public:
+    Mesher(const Scene& scene, const MeshSettings& settings)
+        : scene_(scene),
+          settings_(settings),
+          precision_(precision_of(scene.positions)),
+          vertices_(precision_.weld, scene.positions.size()) {}
+
+    Mesh run() {
+        describe_scene();
+        check_patch_size();
+        flatten_faces();
+        const auto edges = edges_of(faces_);
+        parts_ = find_parts(scene_, faces_, edges, vertices_.positions(), precision_);
+        groups_ = std::isinf(settings_.patch_size)
+                      ? group_singly(faces_)
+                      : group_coplanar(scene_, faces_, edges, vertices_.positions(), precision_);
+        add_fronts();
+        add_backs();
+        combine_fragments();
+        keep_used_vertices();
+        mesh_.parts = std::move(parts_.parts);
+        mesh_.closed = parts_.encloses_all;
+        return std::move(mesh_);
+    }
+
+  private:
+    void describe_scene() {
+        mesh_.bands = scene_.bands;
+        mesh_.objects = scene_.objects;
+        mesh_.face_count = static_cast<std::uint32_t>(scene_.faces.size());
+        mesh_.warnings = scene_.warnings;
+        limit_reflectance(scene_, settings_.max_reflectance, mesh_);
+        const std::vector<double> black(scene_.bands.size(), 0.0);
+        mesh_.materials.push_back({"back", black, black, false});
+    }
+
+    // Volumes multiply three coordinates and the welder squares the precision of one.
+    void check_extent() const {
+        constexpr double kLargest = 1e100, kSmallest = 1e-100;
+        const double largest = precision_.weld * 0x1p21;
+        if (largest > kLargest || (largest > 0 && largest < kSmallest))
+            throw InputError(scene_.file + ": the largest coordinate is " +
+                             std::to_string(largest) + " m, out of range");
+    }
+
+    void check_patch_size() {
+        constexpr double kLeastInPrecisions = 8;  // or vertices on neighbouring lines could weld
+        check_extent();
+        if (settings_.patch_size == 0) settings_.patch_size = default_patch_size(scene_);
+        if (!(settings_.patch_size > kLeastInPrecisions * precision_.plane))
+            throw InputError(scene_.file + ": patch size " + std::to_string(settings_.patch_size) +
+                             " m is not above the precision of the coordinates");
+    }
+
+    void flatten_faces() {
+        std::vector<std::uint32_t> vertex_of_position;
+        vertex_of_position.reserve(scene_.positions.size());
+        for (const auto& position : scene_.positions)
+            vertex_of_position.push_back(vertices_.add(position));
+        const Outlines outlines = outline_faces(scene_.faces, vertex_of_position);
+        faces_ = flatten(scene_, outlines, vertices_.positions(), precision_);
+        if (faces_.flats.empty()) throw InputError(scene_.file + ": no face has an area");
+        mesh_.dropped_degenerate = faces_.degenerate_count;
+        mesh_.dropped_duplicate = faces_.duplicate_count;
+        mesh_.warnings.insert(mesh_.warnings.end(), faces_.warnings.begin(), faces_.warnings.end());
+    }
+
+    CutSurface cut(const Group& group, double patch_size) {
+        const auto merging = std::isinf(settings_.patch_size) ? Merging::none : Merging::in_cells;
+        Surface surface =
+            lay_grid(scene_, faces_, group, vertices_.positions(), precision_, patch_size);
+        return cut_surface(faces_, group, std::move(surface), merging, precision_, vertices_);
+    }
+
+    void add_fronts() {
+        for (const Group& group : groups_) {
+            const std::size_t index = mesh_.surfaces.size();
+            append(cut(group, settings_.patch_size), mesh_);
+            if (mesh_.surfaces.size() > index) front_groups_.push_back(&group);
+        }
+    }
+
+    void add_backs() {
+        for (std::uint32_t front = 0; front < front_groups_.size(); ++front) {
+            const Group& group = *front_groups_[front];
+            const std::size_t before = mesh_.patches.size();
+            switch (back_of(group)) {
+                case Back::none:
+                    continue;
+                case Back::absorber:
+                    append(absorber_behind(group), mesh_);
+                    break;
+                case Back::mirror:
+                    append(turn_over(copy_of(front)), mesh_);
+                    break;
+            }
+            Part& part = parts_.parts[parts_.part_of_flat[group.front()]];
+            part.back_patches += static_cast<std::uint32_t>(mesh_.patches.size() - before);
+        }
+    }
+
+    // Nobody sees the inside of a closed solid, nor the back of a sheet whose other side is
+    // modelled too. That holds for double-sided materials as well, which exporters set freely; only
+    // `block` trusts no solid, e.g. where objects poke into one another.
+    Back back_of(const Group& group) const {
+        const Flat& flat = faces_.flats[group.front()];
+        const bool closed = parts_.parts[parts_.part_of_flat[group.front()]].closed;
+        const bool block = settings_.backfaces == Backfaces::block;
+        if (flat.has_reverse || (closed && !block)) return Back::none;
+        if (scene_.materials[scene_.faces[flat.face].material].double_sided) return Back::mirror;
+        return settings_.backfaces == Backfaces::cull ? Back::none : Back::absorber;
+    }
+
+    // Nothing varies on a black back: one cell.
+    CutSurface absorber_behind(const Group& group) {
+        CutSurface back = turn_over(cut(group, std::numeric_limits<double>::infinity()));
+        back.surface.material = static_cast<std::uint32_t>(mesh_.materials.size() - 1);
+        back.surface.has_chart = false;
+        return back;
+    }
+
+    CutSurface copy_of(std::uint32_t index) const {
+        const Surface& surface = mesh_.surfaces[index];
+        const auto first = mesh_.patches.begin() + surface.first_patch;
+        return {surface, {first, first + surface.patch_count}, {}};
+    }
+
+    void combine_fragments() {
+        auto& fragments = mesh_.fragments;
+        std::ranges::stable_sort(fragments, {}, [](const Fragment& fragment) {
+            return std::pair(fragment.face, fragment.patch);
+        });
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < fragments.size(); ++i) {
+            Fragment& last = fragments[kept ? kept - 1 : 0];
+            if (kept && last.face == fragments[i].face && last.patch == fragments[i].patch)
+                last.area += fragments[i].area;
+            else
+                fragments[kept++] = fragments[i];
+        }
+        fragments.resize(kept);
+    }
+
+    void keep_used_vertices() {
+        constexpr std::uint32_t kUnused = 0xffffffffu;
+        const auto& all = vertices_.positions();
+        std::vector<std::uint32_t> new_index(all.size(), kUnused);
+        for (const Patch& patch : mesh_.patches)
+            for (const std::uint32_t v : patch.corners) new_index[v] = 0;
+        for (std::uint32_t v = 0; v < all.size(); ++v) {
+            if (new_index[v] == kUnused) continue;
+            new_index[v] = static_cast<std::uint32_t>(mesh_.vertices.size());
+            mesh_.vertices.push_back(all[v]);
+        }
+        for (Patch& patch : mesh_.patches)
+            for (std::uint32_t& v : patch.corners) v = new_index[v];
+    }
+
+    const Scene& scene_;
+    MeshSettings settings_;
+    Precision precision_;
+    VertexWelder vertices_;
+    FlatFaces faces_;
+    Parts parts_;
+    std::vector<Group> groups_;
+    std::vector<const Group*> front_groups_;  ///< of each front surface
+    Mesh mesh_;
+};
+
+double round_to_two_digits(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+Mesh build_mesh(const Scene& scene, const MeshSettings& settings) {
+    return Mesher(scene, settings).run();
+}
+
+// 3,000 cells' worth of area: with its borders a Cornell box gets some 3,300 patches.
+double default_patch_size(const Scene& scene) {
+    constexpr double kCells = 3000;
+    double total = 0;
+    for (const Face& face : scene.faces)
+        if (face.vertices.size() > 2)
+            total += glm::length(area_vector(face.vertices, scene.positions));
+    return total > 0 ? round_to_two_digits(std::sqrt(total / kCells)) : 1.0;
+}
+
+}  // namespace hemirad

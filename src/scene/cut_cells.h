@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/flat_faces.h"
+#include "scene/group_flats.h"
+#include "scene/mesh.h"
+#include "scene/polygon.h"
+#include "scene/precision.h"
+#include "scene/vertex_welder.h"
+
+namespace hemirad {
+
+/// The part of one convex piece of an input face that lies in one cell.
+struct CellPiece {
+    std::uint32_t cell;
+    std::uint32_t face;
+    Polygon polygon;
+};
+
+/// Cuts the group's faces along the surface's grid; sorted by cell. New vertices go to the welder.
+///
+/// A vertex within Precision::plane of a grid line counts as on it and stays where it is, so
+/// nothing is moved and no sliver arises beside a line; where an edge crosses a line is computed
+/// from the edge's ends in one order, so that both of its faces get the same vertex.
+std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group,
+                                      const Surface& surface, const Precision& precision,
+                                      VertexWelder& vertices);
+
+}  // namespace hemirad

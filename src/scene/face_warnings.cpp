@@ -1,0 +1,37 @@
+#include "scene/face_warnings.h"
+
+#include <sstream>
+
+namespace hemirad {
+namespace {
+
+constexpr std::uint32_t kInFull = 5;
+
+std::string name_of(const Scene& scene, const Face& face) {
+    const bool named = face.object < scene.objects.size() && !scene.objects[face.object].empty();
+    return named ? '"' + scene.objects[face.object] + '"' : '#' + std::to_string(face.object);
+}
+
+}  // namespace
+
+void FaceWarnings::add(std::uint32_t face) {
+    if (++count_ > kInFull) return;
+    const Face& faulty = scene_.faces[face];
+    std::ostringstream line;
+    line << scene_.file << ": face " << face << " of " << name_of(scene_, faulty);
+    if (!faulty.vertices.empty()) {
+        const auto& at = scene_.positions[faulty.vertices.front()];
+        line << " at (" << at.x << ", " << at.y << ", " << at.z << ')';
+    }
+    line << ' ' << what_;
+    lines_.push_back(line.str());
+}
+
+void FaceWarnings::append_to(std::vector<std::string>& warnings) const {
+    warnings.insert(warnings.end(), lines_.begin(), lines_.end());
+    if (count_ > kInFull)
+        warnings.push_back(scene_.file + ": and " + std::to_string(count_ - kInFull) +
+                           " more faces: each " + what_);
+}
+
+}  // namespace hemirad

@@ -1,0 +1,190 @@
+#include "scene/find_parts.h"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
+
+#include "scene/disjoint_sets.h"
+
+namespace hemirad {
+namespace {
+
+using Vertices = std::vector<glm::dvec3>;
+
+// Joins what shares an edge; returns the edges that are not passed equally often both ways.
+std::vector<Edge> join_over_edges(std::span<const Edge> edges, DisjointSets& flats) {
+    std::vector<Edge> open;
+    for_each_shared(edges, [&](std::span<const Edge> shared) {
+        std::ptrdiff_t balance = 0;
+        for (const Edge& edge : shared) {
+            flats.join(edge.owner, shared.front().owner);
+            balance += edge.ascending ? 1 : -1;
+        }
+        if (balance != 0) open.insert(open.end(), shared.begin(), shared.end());
+    });
+    return open;
+}
+
+/// One end of an open edge.
+struct EdgeEnd {
+    std::uint32_t vertex;
+    std::uint32_t edge;
+    auto operator<=>(const EdgeEnd&) const = default;
+};
+
+std::vector<EdgeEnd> ends_of(std::span<const Edge> edges) {
+    std::vector<EdgeEnd> ends;
+    for (std::uint32_t e = 0; e < edges.size(); ++e) {
+        ends.push_back({edges[e].low(), e});
+        ends.push_back({edges[e].high(), e});
+    }
+    std::ranges::sort(ends);
+    return ends;
+}
+
+std::uint32_t other_end(const Edge& edge, std::uint32_t vertex) {
+    return edge.low() == vertex ? edge.high() : edge.low();
+}
+
+// Two edges that meet are on one line where the shorter one ends no farther from the longer one's
+// line than coordinates are precise.
+bool on_one_line(const glm::dvec3& a, const glm::dvec3& b, double precision) {
+    const double longer = std::max(glm::length(a), glm::length(b));
+    return glm::length(glm::cross(a, b)) <= precision * longer;
+}
+
+DisjointSets join_on_lines(std::span<const Edge> edges, std::span<const EdgeEnd> ends,
+                           const Vertices& vertices, double precision) {
+    DisjointSets lines(edges.size());
+    const auto along = [&](const EdgeEnd& end) {
+        return vertices[other_end(edges[end.edge], end.vertex)] - vertices[end.vertex];
+    };
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        for (std::size_t j = i + 1; j < ends.size() && ends[j].vertex == ends[i].vertex; ++j)
+            if (on_one_line(along(ends[i]), along(ends[j]), precision))
+                lines.join(ends[i].edge, ends[j].edge);
+    return lines;
+}
+
+// Directed edges on one line cover every point of it equally often both ways where each vertex is
+// left as often as it is entered.
+std::vector<bool> find_open_lines(std::span<const Edge> edges, std::span<const EdgeEnd> ends,
+                                  DisjointSets& lines) {
+    std::vector<bool> open(edges.size(), false);
+    for (std::size_t begin = 0, end = 0; begin < ends.size(); begin = end) {
+        std::map<std::uint32_t, std::ptrdiff_t> left_less_entered;
+        for (; end < ends.size() && ends[end].vertex == ends[begin].vertex; ++end) {
+            const Edge& edge = edges[ends[end].edge];
+            const bool leaves = edge.from() == ends[end].vertex;
+            left_less_entered[lines.find(ends[end].edge)] += leaves ? 1 : -1;
+        }
+        for (const auto& [line, difference] : left_less_entered)
+            if (difference != 0) open[line] = true;
+    }
+    return open;
+}
+
+// Returns the edges that stay open; joins the flats along the others.
+std::vector<Edge> join_over_t_junctions(std::span<const Edge> edges, const Vertices& vertices,
+                                        double precision, DisjointSets& flats) {
+    const auto ends = ends_of(edges);
+    DisjointSets lines = join_on_lines(edges, ends, vertices, precision);
+    const auto open_lines = find_open_lines(edges, ends, lines);
+    std::vector<Edge> open;
+    for (std::uint32_t e = 0; e < edges.size(); ++e) {
+        const std::uint32_t line = lines.find(e);
+        if (open_lines[line])
+            open.push_back(edges[e]);
+        else
+            flats.join(edges[e].owner, edges[line].owner);
+    }
+    return open;
+}
+
+/// What decides whether parts lie inside each other.
+struct Extent {
+    glm::dvec3 low = glm::dvec3(std::numeric_limits<double>::infinity());
+    glm::dvec3 high = -low;
+    double volume = 0;  ///< negative where the fronts face inwards: a room
+};
+
+bool lies_in(const Extent& inner, const Extent& outer) {
+    return glm::all(glm::greaterThanEqual(inner.low, outer.low)) &&
+           glm::all(glm::lessThanEqual(inner.high, outer.high));
+}
+
+// Divergence theorem: a third of the flux of the position, from a point near to lose no digits.
+std::vector<Extent> measure(const FlatFaces& faces, const Parts& parts, const Vertices& vertices) {
+    std::vector<Extent> extents(parts.parts.size());
+    std::vector<const glm::dvec3*> base(parts.parts.size(), nullptr);
+    for (std::uint32_t f = 0; f < faces.flats.size(); ++f) {
+        const auto outline = faces.outline(faces.flats[f]);
+        const std::uint32_t part = parts.part_of_flat[f];
+        Extent& extent = extents[part];
+        if (!base[part]) base[part] = &vertices[outline[0]];
+        extent.volume +=
+            glm::dot(vertices[outline[0]] - *base[part], area_vector(outline, vertices)) / 3;
+        for (const std::uint32_t v : outline) {
+            extent.low = glm::min(extent.low, vertices[v]);
+            extent.high = glm::max(extent.high, vertices[v]);
+        }
+    }
+    return extents;
+}
+
+// Bounding boxes stand in for the shapes: a solid beside an L-shaped room but within its box
+// passes for one inside it.
+bool encloses_all(const Parts& parts, const std::vector<Extent>& extents) {
+    std::vector<Extent> rooms;
+    for (const Extent& extent : extents)
+        if (extent.volume < 0) rooms.push_back(extent);
+    std::ranges::sort(rooms, std::greater{}, [](const Extent& room) { return -room.volume; });
+    return std::ranges::all_of(parts.parts, &Part::closed) &&
+           std::ranges::all_of(extents, [&](const Extent& inner) {
+               return std::ranges::any_of(rooms,
+                                          [&](const Extent& room) { return lies_in(inner, room); });
+           });
+}
+
+void list_parts(const Scene& scene, const FlatFaces& faces, DisjointSets& sets, Parts& parts) {
+    constexpr std::uint32_t kUnseen = 0xffffffffu;
+    std::vector<std::uint32_t> part_of_root(faces.flats.size(), kUnseen);
+    for (std::uint32_t f = 0; f < faces.flats.size(); ++f) {
+        std::uint32_t& index = part_of_root[sets.find(f)];
+        if (index == kUnseen) {
+            index = static_cast<std::uint32_t>(parts.parts.size());
+            parts.parts.emplace_back().closed = true;
+        }
+        parts.part_of_flat.push_back(index);
+        Part& part = parts.parts[index];
+        const Face& face = scene.faces[faces.flats[f].face];
+        if (part.objects.empty() || part.objects.back() != face.object)
+            part.objects.push_back(face.object);
+        if (scene.materials[face.material].double_sided) part.doubled = true;
+        if (f == 0 || faces.flats[f - 1].face != faces.flats[f].face) ++part.face_count;
+    }
+    for (Part& part : parts.parts) {
+        std::ranges::sort(part.objects);
+        const auto repeated = std::ranges::unique(part.objects);
+        part.objects.erase(repeated.begin(), repeated.end());
+    }
+}
+
+}  // namespace
+
+Parts find_parts(const Scene& scene, const FlatFaces& faces, std::span<const Edge> edges,
+                 const Vertices& vertices, const Precision& precision) {
+    DisjointSets sets(faces.flats.size());
+    const auto unbalanced = join_over_edges(edges, sets);
+    const auto open = join_over_t_junctions(unbalanced, vertices, precision.plane, sets);
+
+    Parts parts;
+    list_parts(scene, faces, sets, parts);
+    for (const Edge& edge : open) parts.parts[parts.part_of_flat[edge.owner]].closed = false;
+    parts.encloses_all = encloses_all(parts, measure(faces, parts, vertices));
+    return parts;
+}
+
+}  // namespace hemirad

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/edges.h"
+#include "scene/flat_faces.h"
+#include "scene/mesh.h"
+#include "scene/precision.h"
+
+namespace hemirad {
+
+struct Parts {
+    std::vector<Part> parts;
+    std::vector<std::uint32_t> part_of_flat;
+    bool encloses_all = false;  ///< every part is closed and seen from inside one
+};
+
+/// Connected components over shared edges. A part is closed where every edge is passed as often one
+/// way as the other, and edges on one line that are not (a T-junction: one long edge against
+/// several short ones) together leave each of their vertices as often as they enter it.
+Parts find_parts(const Scene& scene, const FlatFaces& faces, std::span<const Edge> edges,
+                 const std::vector<glm::dvec3>& vertices, const Precision& precision);
+
+}  // namespace hemirad

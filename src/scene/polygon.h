@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <vector>
+
+namespace hemirad {
+
+/// A vertex and where it lies in the plane of its surface.
+struct Corner {
+    std::uint32_t vertex;
+    glm::dvec2 at;
+};
+
+/// Counter-clockwise; the last corner joins the first.
+using Polygon = std::vector<Corner>;
+
+double area(const Polygon& polygon);
+
+/// Height above its longest side, were it a triangle: 2 area / longest edge.
+double thickness(const Polygon& polygon);
+
+/// How far b stands out of the line from a to c: positive at a convex corner, 0 at a straight one
+/// and at the tip of a spike.
+double bulge(const Corner& a, const Corner& b, const Corner& c);
+
+/// Without the corners that stand out by `precision` or less.
+Polygon without_straight_corners(Polygon polygon, double precision);
+
+/// Every corner turns left and the outline goes round once.
+bool is_convex(const Polygon& polygon);
+
+/// Two of its edges cross in their interiors (a bow-tie).
+bool crosses_itself(const Polygon& polygon);
+
+/// Of two convex polygons.
+double common_area(const Polygon& a, const Polygon& b);
+
+/// A strictly convex polygon as quads and at most one triangle.
+/// Parts no thicker than `precision` are left out.
+std::vector<Polygon> cut_into_quads(const Polygon& polygon, double precision);
+
+/// Ear clipping (Meisters 1975) of a simple polygon; empty where it is not simple after all.
+std::vector<std::array<Corner, 3>> clip_ears(Polygon polygon, double precision);
+
+}  // namespace hemirad

@@ -1,0 +1,90 @@
+#include "scene/vertex_welder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace hemirad {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+// Wide enough that the box of one tolerance around a vertex rarely touches a second cell, narrow
+// enough that only vertices which nearly touch share one.
+constexpr double kCellInTolerances = 16;
+
+}  // namespace
+
+VertexWelder::VertexWelder(double tolerance, std::size_t expected)
+    : tolerance_(tolerance), cell_size_(tolerance > 0 ? kCellInTolerances * tolerance : 1.0) {
+    positions_.reserve(expected);
+    next_.reserve(expected);
+    heads_.assign(std::bit_ceil(std::max<std::size_t>(expected, 16)), kNone);
+}
+
+std::uint32_t VertexWelder::add(const glm::dvec3& position) {
+    if (const std::uint32_t found = find(position); found != kNone) return found;
+    const auto vertex = static_cast<std::uint32_t>(positions_.size());
+    positions_.push_back(position);
+    next_.push_back(kNone);
+    if (positions_.size() > heads_.size())
+        grow();
+    else
+        link(vertex);
+    return vertex;
+}
+
+VertexWelder::Cell VertexWelder::cell_of(const glm::dvec3& position) const {
+    return {static_cast<std::int64_t>(std::floor(position.x / cell_size_)),
+            static_cast<std::int64_t>(std::floor(position.y / cell_size_)),
+            static_cast<std::int64_t>(std::floor(position.z / cell_size_))};
+}
+
+// Multiplicative hashing with the odd integer nearest 2^64 / golden ratio (Knuth vol. 3, 6.4).
+std::uint32_t VertexWelder::bucket_of(const Cell& cell) const {
+    constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+    std::uint64_t hash = 0;
+    for (const std::int64_t index : cell) {
+        hash = (hash ^ static_cast<std::uint64_t>(index)) * kGolden;
+        hash ^= hash >> 32;
+    }
+    return static_cast<std::uint32_t>(hash & (heads_.size() - 1));
+}
+
+// Buckets keep no cell: a stranger in the same bucket is too far away to be taken.
+std::uint32_t VertexWelder::find_in(const Cell& cell, const glm::dvec3& position) const {
+    std::uint32_t first = kNone;
+    for (std::uint32_t v = heads_[bucket_of(cell)]; v != kNone; v = next_[v]) {
+        const glm::dvec3 apart = positions_[v] - position;
+        if (glm::dot(apart, apart) <= tolerance_ * tolerance_) first = std::min(first, v);
+    }
+    return first;
+}
+
+// The lowest index in reach, so that the answer does not depend on the order within a bucket.
+std::uint32_t VertexWelder::find(const glm::dvec3& position) const {
+    const Cell low = cell_of(position - tolerance_);
+    const Cell high = cell_of(position + tolerance_);
+    if (low == high) return find_in(low, position);
+    std::uint32_t first = kNone;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Cell cell = {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
+                           corner & 4 ? high[2] : low[2]};
+        first = std::min(first, find_in(cell, position));
+    }
+    return first;
+}
+
+void VertexWelder::link(std::uint32_t vertex) {
+    std::uint32_t& head = heads_[bucket_of(cell_of(positions_[vertex]))];
+    next_[vertex] = head;
+    head = vertex;
+}
+
+void VertexWelder::grow() {
+    heads_.assign(2 * heads_.size(), kNone);
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) link(v);
+}
+
+}  // namespace hemirad
