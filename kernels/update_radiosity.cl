@@ -54,8 +54,8 @@ __kernel void update_radiosity(__global Shot* shot, const __global float* shot_f
                 sums[band][step % ACCUMULATORS] += left;
             }
             for (int lane = 0; lane < LANES; ++lane)
-                if (lane_of(energy, lane) > summary.most) {
-                    summary.most = lane_of(energy, lane);
+                if (lane_of(energy, lane) > summary.energy) {
+                    summary.energy = lane_of(energy, lane);
                     summary.patch = patch + lane;
                 }
         }

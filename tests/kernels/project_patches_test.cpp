@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "reference/projector.h"
+#include "support/pipeline.h"
+
+namespace hemirad::test {
+namespace {
+
+// What single precision may move an edge or a plane by, on either side (kEdgeMargin), twice: the
+// reference's bound is on each side of the nominal edge, the device's margin on one.
+constexpr double kBound = 2 * kEdgeMargin;
+
+const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0);
+
+std::int64_t count(const std::vector<int>& owners, int patch) {
+    return std::count(owners.begin(), owners.end(), patch);
+}
+
+class ProjectPatches : public testing::TestWithParam<Shape> {
+  protected:
+    std::vector<int> owners_seen_by_first(const std::vector<Polygon>& polygons, int resolution) {
+        Aimed aimed(polygons, GetParam(), resolution);
+        aimed.aim(0);
+        aimed.project();
+        return aimed.owners();
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ProjectPatches, testing::ValuesIn(shapes()),
+                         [](const auto& info) { return name_of(info.param); });
+
+TEST_P(ProjectPatches, NearerPatchHidesFarther) {
+    const auto floor = square({0, 0, 0}, kX, kY, 1);
+    const auto far = square({0, 0, 2}, kY, kX, 1), near = square({0, 0, 1}, kY, kX, 2);
+
+    const auto owners = owners_seen_by_first({floor, far, near}, 64);
+
+    EXPECT_EQ(count(owners, 1), 0);
+    // Centre of a square of side 2 at distance 1, Lambert: 4 / (pi sqrt 2) * atan(1 / sqrt 2).
+    EXPECT_NEAR(static_cast<double>(count(owners, 2)) / disk_proxel_count(64), 0.5541, 5e-3);
+}
+
+TEST_P(ProjectPatches, ATieGoesToTheLowestPatch) {
+    const auto floor = square({0, 0, 0}, kX, kY, 1), ceiling = square({0, 0, 1}, kY, kX, 2);
+
+    const auto owners = owners_seen_by_first({floor, ceiling, ceiling, ceiling}, 64);
+
+    EXPECT_GT(count(owners, 1), 0);
+    EXPECT_EQ(count(owners, 2) + count(owners, 3), 0);
+}
+
+TEST_P(ProjectPatches, EveryProxelInTheDiskHasOneOwner) {
+    const auto owners = owners_seen_by_first(soup(100, 0.3, 1), 100);
+
+    EXPECT_EQ(100 * 100 - count(owners, reference::kOutsideDisk),
+              static_cast<std::int64_t>(disk_proxel_count(100)));
+}
+
+TEST_P(ProjectPatches, NothingEscapesFromAClosedBox) {
+    for (const int patch : {0, 7, 40, 95}) {
+        Aimed aimed(box({1, 0.7, 0.3}, 4), GetParam(), 256);
+        aimed.aim(patch);
+        aimed.project();
+
+        EXPECT_EQ(count(aimed.owners(), reference::kEscaped), 0) << "shooter " << patch;
+    }
+}
+
+TEST_P(ProjectPatches, OwnersAgreeWithTheScalarReference) {
+    std::size_t undecided = 0;
+    for (const int patches : {1, 10, 1000})
+        for (const int resolution : {64, 512}) {
+            Aimed aimed(soup(patches, patches > 100 ? 0.2 : 0.6, patches), GetParam(), resolution);
+            aimed.aim(0);
+            aimed.project();
+            const auto truth =
+                reference::project(aimed.shooter(), aimed.polygons(), resolution, kBound);
+            const auto owners = aimed.owners();
+
+            for (std::size_t proxel = 0; proxel < owners.size(); ++proxel) {
+                if (truth.decided(proxel))
+                    ASSERT_EQ(owners[proxel], truth.owner[proxel]) << "proxel " << proxel;
+                else
+                    ASSERT_TRUE(truth.admits(proxel, owners[proxel])) << "proxel " << proxel;
+            }
+            undecided += truth.undecided.size();
+        }
+    RecordProperty("undecided_proxels", static_cast<int>(undecided));
+    EXPECT_LT(undecided, 100u);
+}
+
+}  // namespace
+}  // namespace hemirad::test

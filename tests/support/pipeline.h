@@ -1,0 +1,111 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "solver/shot_pipeline.h"
+#include "support/patches.h"
+
+/// One shot on the default device, and what its shooter sees.
+namespace hemirad::test {
+
+/// A shape of the PE array under which every kernel has to give the same bits.
+struct Shape {
+    std::uint32_t width, height, lanes, tile_width, tile_height;
+
+    mp1map::PeArrayRequest request() const { return {width, height, lanes, tile_width, tile_height}; }
+};
+
+inline std::string name_of(const Shape& shape) {
+    return std::to_string(shape.width) + "x" + std::to_string(shape.height) + "_lanes" +
+           std::to_string(shape.lanes) + "_tile" + std::to_string(shape.tile_width) + "x" +
+           std::to_string(shape.tile_height);
+}
+inline std::ostream& operator<<(std::ostream& out, const Shape& shape) {
+    return out << name_of(shape);
+}
+
+inline const std::vector<Shape>& shapes() {
+    static const std::vector<Shape> all = {
+        {4, 1, 16, 64, 64}, {8, 8, 1, 64, 64},   {16, 16, 4, 64, 64},
+        {32, 32, 1, 32, 32}, {64, 64, 1, 64, 64}, {2, 3, 8, 48, 33}};
+    return all;
+}
+
+inline PatchLight grey_light(const PatchArrays& patches, float reflectance = 0.5f) {
+    PatchLight light;
+    light.emitted.assign(patches.stride, 0.0f);
+    light.reflectance.assign(patches.stride, 0.0f);
+    for (std::uint32_t i = 0; i < patches.patch_count; ++i) {
+        light.emitted[i] = 1.0f / static_cast<float>(patches.patch_count);
+        light.reflectance[i] = reflectance;
+    }
+    light.band_weight = {1.0f};
+    return light;
+}
+
+/// A pipeline whose next shooter is `patch`, aimed and ready to be projected.
+class Aimed {
+  public:
+    Aimed(const std::vector<Polygon>& polygons, const Shape& shape, std::uint32_t resolution)
+        : mesh_(mesh_of(polygons)),
+          arrays_(patch_arrays(mesh_)),
+          polygons_(normalised(polygons, arrays_)),
+          device_(mp1map::Device::open("")),
+          pipeline_(arrays_, grey_light(arrays_), settings(shape, resolution), device_) {
+        pipeline_.init_plane();
+    }
+
+    ShotPipeline& pipeline() { return pipeline_; }
+    const PatchArrays& arrays() const { return arrays_; }
+    const std::vector<Polygon>& polygons() const { return polygons_; }  ///< normalised
+
+    void aim(int patch) {
+        auto shot = pipeline_.shot();
+        shot.patch = patch;
+        shot.status = kRunning;
+        pipeline_.set_shot(shot);
+        pipeline_.aim_hemisphere(0);
+    }
+    void project() {
+        pipeline_.cull_patches();
+        pipeline_.set_up_projection();
+        pipeline_.count_areas();
+        pipeline_.prefix_sum();
+        pipeline_.bin_areas();
+        pipeline_.project_patches();
+    }
+    /// The frame that aim_hemisphere made.
+    reference::Shooter shooter() {
+        const auto shot = pipeline_.shot();
+        const auto vector = [](const float* v) { return glm::dvec3(v[0], v[1], v[2]); };
+        return {vector(shot.origin), vector(shot.normal), vector(shot.u_axis)};
+    }
+    /// In the reference's numbering: kEscaped for no patch, kOutsideDisk beyond the disk.
+    std::vector<int> owners() {
+        std::vector<int> result;
+        for (const int owner : pipeline_.owners())
+            result.push_back(owner == pipeline_.escaped_owner()       ? reference::kEscaped
+                             : owner == pipeline_.escaped_owner() + 1 ? reference::kOutsideDisk
+                                                                      : owner);
+        return result;
+    }
+
+  private:
+    static PipelineSettings settings(const Shape& shape, std::uint32_t resolution) {
+        PipelineSettings result;
+        result.resolution = resolution;
+        result.pe_array = shape.request();
+        result.keep_owners = true;
+        return result;
+    }
+
+    Mesh mesh_;
+    PatchArrays arrays_;
+    std::vector<Polygon> polygons_;
+    mp1map::Device device_;
+    ShotPipeline pipeline_;
+};
+
+}  // namespace hemirad::test
