@@ -171,6 +171,20 @@ void check_buffer_views(const InputFile& file, const Json& json) {
     });
 }
 
+/// tinygltf drops a primitive without attributes, and the ones behind it would change their number.
+void check_primitives(const InputFile& file, const Json& json) {
+    for_each(json, "meshes/*", [&](const std::string& path, const Json& mesh) {
+        const auto primitives = mesh.find("primitives");
+        if (primitives != mesh.end() && primitives->is_array()) return;
+        fail(file, path, "holds no array of primitives");
+    });
+    for_each(json, "meshes/*/primitives/*", [&](const std::string& path, const Json& primitive) {
+        const auto attributes = primitive.find("attributes");
+        if (attributes != primitive.end() && attributes->is_object()) return;
+        fail(file, path, "holds no attributes");
+    });
+}
+
 void check_extensions(const InputFile& file, const Json& json) {
     for_each(json, "extensionsRequired/*", [&](const std::string& path, const Json& value) {
         if (!value.is_string()) fail(file, path, "is not a string");
@@ -208,6 +222,7 @@ void check_sections(const InputFile& file, const Json& json) {
 void check_gltf(const InputFile& file, const Json& json) {
     check_sections(file, json);
     check_extensions(file, json);
+    check_primitives(file, json);
     check_references(file, json);
     check_numbers(file, json);
     check_uris(file, json);

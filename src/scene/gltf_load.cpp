@@ -137,7 +137,7 @@ GltfFile load_gltf(const InputFile& file) {
     } catch (const std::exception& exception) {  // of tinygltf's at() and of its JSON
         error = exception.what();
     }
-    if (!loaded) fail(file, "glTF", one_line(error));
+    if (!loaded) fail(file, "glTF", error.empty() ? "cannot be read" : one_line(error));
     return gltf;
 }
 

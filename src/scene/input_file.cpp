@@ -60,7 +60,11 @@ std::string printable(std::string_view text) {
     return result;
 }
 
-std::string in_quotes(std::string_view text) { return "\"" + printable(text) + "\""; }
+std::string in_quotes(std::string_view text) {
+    std::string result(1, '"');
+    result += printable(text);
+    return result += '"';
+}
 
 std::string number(double value) {
     std::array<char, 512> text{};

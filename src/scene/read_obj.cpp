@@ -103,7 +103,10 @@ void add_face(ObjFile& obj, const tinyobj::index_t* corners, int count) {
 
 void set_group(ObjFile& obj, const char** names, int count) {
     obj.group.clear();
-    for (int i = 0; i < count; ++i) obj.group += (i > 0 ? " " : "") + std::string(names[i]);
+    for (int i = 0; i < count; ++i) {
+        if (i > 0) obj.group += ' ';
+        obj.group += names[i];
+    }
 }
 
 void read_library(ObjFile& obj, const std::string& reference, const std::filesystem::path& path) {
