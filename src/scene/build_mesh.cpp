@@ -17,7 +17,7 @@
 #include "scene/precision.h"
 #include "scene/vertex_welder.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 enum class Back { none, absorber, mirror };
@@ -199,9 +199,12 @@ double round_to_two_digits(double value) {
 }
 
 }  // namespace
+}  // namespace hemirad::meshing
+
+namespace hemirad {
 
 Mesh build_mesh(const Scene& scene, const MeshSettings& settings) {
-    return Mesher(scene, settings).run();
+    return meshing::Mesher(scene, settings).run();
 }
 
 // 3,000 cells' worth of area: with its borders a Cornell box gets some 3,300 patches.
@@ -210,8 +213,8 @@ double default_patch_size(const Scene& scene) {
     double total = 0;
     for (const Face& face : scene.faces)
         if (face.vertices.size() > 2)
-            total += glm::length(area_vector(face.vertices, scene.positions));
-    return total > 0 ? round_to_two_digits(std::sqrt(total / kCells)) : 1.0;
+            total += glm::length(meshing::area_vector(face.vertices, scene.positions));
+    return total > 0 ? meshing::round_to_two_digits(std::sqrt(total / kCells)) : 1.0;
 }
 
 }  // namespace hemirad

@@ -6,7 +6,7 @@
 
 #include "scene/frame.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 struct Halves {
@@ -125,4 +125,4 @@ std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group
     return cutter.take();
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -10,7 +10,7 @@
 #include "scene/precision.h"
 #include "scene/vertex_welder.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// The part of one convex piece of an input face that lies in one cell.
 struct CellPiece {
@@ -28,4 +28,4 @@ std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group
                                       const Surface& surface, const Precision& precision,
                                       VertexWelder& vertices);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -7,7 +7,7 @@
 #include "scene/merge_pieces.h"
 #include "scene/polygon.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 using Cell = std::span<const CellPiece>;
@@ -100,4 +100,4 @@ void append(CutSurface cut, Mesh& mesh) {
     mesh.surfaces.push_back(std::move(cut.surface));
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

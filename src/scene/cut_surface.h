@@ -8,7 +8,7 @@
 #include "scene/precision.h"
 #include "scene/vertex_welder.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// A surface that is not in a mesh yet: patches and fragments count from its own first patch.
 struct CutSurface {
@@ -30,4 +30,4 @@ CutSurface turn_over(CutSurface front);
 /// Gives the surface its place in the mesh, unless it has no patch.
 void append(CutSurface cut, Mesh& mesh);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

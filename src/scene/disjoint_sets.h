@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// Union-find with path halving (Tarjan and van Leeuwen 1984); the root is the lowest member.
 class DisjointSets {
@@ -27,4 +27,4 @@ class DisjointSets {
     std::vector<std::uint32_t> parent_;
 };
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -1,6 +1,6 @@
 #include "scene/edges.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 std::vector<Edge> edges_of(const FlatFaces& faces) {
     std::vector<Edge> edges;
@@ -14,4 +14,4 @@ std::vector<Edge> edges_of(const FlatFaces& faces) {
     return edges;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

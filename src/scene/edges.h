@@ -7,7 +7,7 @@
 
 #include "scene/flat_faces.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// A directed edge of an outline. `owner` is the flat, or whatever else has outlines.
 struct Edge {
@@ -43,4 +43,4 @@ void for_each_shared(std::span<const Edge> sorted, Visit visit) {
 /// The outlines of all flats, sorted.
 std::vector<Edge> edges_of(const FlatFaces& faces);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

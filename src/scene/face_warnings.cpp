@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 constexpr std::uint32_t kInFull = 5;
@@ -34,4 +34,4 @@ void FaceWarnings::append_to(std::vector<std::string>& warnings) const {
                            " more faces: each " + what_);
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

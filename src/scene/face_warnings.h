@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// Warnings of one kind about faces: the first few in full, the rest as a count.
 class FaceWarnings {
@@ -24,4 +24,4 @@ class FaceWarnings {
     std::uint32_t count_ = 0;
 };
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

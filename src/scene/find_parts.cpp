@@ -8,7 +8,7 @@
 
 #include "scene/disjoint_sets.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 using Vertices = std::vector<glm::dvec3>;
@@ -187,4 +187,4 @@ Parts find_parts(const Scene& scene, const FlatFaces& faces, std::span<const Edg
     return parts;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

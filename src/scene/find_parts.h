@@ -8,7 +8,7 @@
 #include "scene/mesh.h"
 #include "scene/precision.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 struct Parts {
     std::vector<Part> parts;
@@ -22,4 +22,4 @@ struct Parts {
 Parts find_parts(const Scene& scene, const FlatFaces& faces, std::span<const Edge> edges,
                  const std::vector<glm::dvec3>& vertices, const Precision& precision);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

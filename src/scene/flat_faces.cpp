@@ -9,7 +9,7 @@
 #include "scene/frame.h"
 #include "scene/polygon.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 using Vertices = std::vector<glm::dvec3>;
@@ -167,4 +167,4 @@ FlatFaces flatten(const Scene& scene, const Outlines& outlines, const Vertices& 
     return Flattener(scene, outlines, vertices, precision).run();
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

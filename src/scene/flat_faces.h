@@ -11,7 +11,7 @@
 #include "scene/precision.h"
 #include "scene/scene.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// A planar, simple polygon: an input face, or a triangle of one that is not planar.
 struct Flat {
@@ -44,4 +44,4 @@ FlatFaces flatten(const Scene& scene, const Outlines& outlines,
 glm::dvec3 area_vector(std::span<const std::uint32_t> outline,
                        const std::vector<glm::dvec3>& vertices);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

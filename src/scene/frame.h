@@ -4,7 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// Orthonormal, right-handed coordinates of a plane.
 struct Frame {
@@ -26,4 +26,4 @@ inline Frame frame_along(const glm::dvec3& origin, const glm::dvec3& direction,
     return {origin, u / glm::length(u), v, normal};
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

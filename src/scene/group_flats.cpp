@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 using Vertices = std::vector<glm::dvec3>;
@@ -132,4 +132,4 @@ std::vector<Group> group_singly(const FlatFaces& faces) {
     return groups;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -7,7 +7,7 @@
 #include "scene/flat_faces.h"
 #include "scene/precision.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// The flats of one surface, ascending.
 using Group = std::vector<std::uint32_t>;
@@ -22,4 +22,4 @@ std::vector<Group> group_coplanar(const Scene& scene, const FlatFaces& faces,
 /// Every flat by itself.
 std::vector<Group> group_singly(const FlatFaces& faces);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -10,7 +10,7 @@
 #include "scene/edges.h"
 #include "scene/frame.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 using Vertices = std::vector<glm::dvec3>;
@@ -121,4 +121,4 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
     return surface;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

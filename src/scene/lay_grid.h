@@ -5,7 +5,7 @@
 #include "scene/mesh.h"
 #include "scene/precision.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// The surface of a group: its frame along the longest boundary edge (the first of equals), its
 /// bounding rectangle, divided evenly into cells of about `patch_size`. Has no patches yet.
@@ -13,4 +13,4 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
                  const std::vector<glm::dvec3>& vertices, const Precision& precision,
                  double patch_size);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 std::string name_of(const Scene& scene, std::size_t material) {
@@ -38,4 +38,4 @@ void limit_reflectance(const Scene& scene, double limit, Mesh& mesh) {
     if (!limited.empty()) mesh.warnings.push_back(warning(scene, limit, limited));
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

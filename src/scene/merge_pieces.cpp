@@ -6,7 +6,7 @@
 #include "scene/disjoint_sets.h"
 #include "scene/edges.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 /// An edge between the pieces `left` and `right`, in the direction in which `left` has it.
@@ -186,4 +186,4 @@ std::vector<MergedPiece> merge_pieces(std::span<const CellPiece> cell, double pr
     return merged;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

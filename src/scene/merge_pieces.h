@@ -6,7 +6,7 @@
 #include "scene/cut_cells.h"
 #include "scene/polygon.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// A strictly convex polygon and the pieces (indices into the cell's) that it replaces.
 struct MergedPiece {
@@ -18,4 +18,4 @@ struct MergedPiece {
 /// outline is convex, else pair by pair as long as the pair is.
 std::vector<MergedPiece> merge_pieces(std::span<const CellPiece> cell, double precision);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

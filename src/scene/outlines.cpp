@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 // Repeated corners and, where the outline goes a way and straight back, the tip of that spike.
@@ -120,4 +120,4 @@ std::vector<Twin> find_twins(const Outlines& outlines) {
     return twins;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// The welded corners of every input face, without repeated ones and without spikes. Empty where
 /// fewer than three are left.
@@ -32,4 +32,4 @@ enum class Twin : std::uint8_t {
 
 std::vector<Twin> find_twins(const Outlines& outlines);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -187,4 +187,4 @@ std::vector<std::array<Corner, 3>> clip_ears(Polygon polygon, double precision) 
     return triangles;
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// A vertex and where it lies in the plane of its surface.
 struct Corner {
@@ -44,4 +44,4 @@ std::vector<Polygon> cut_into_quads(const Polygon& polygon, double precision);
 /// Ear clipping (Meisters 1975) of a simple polygon; empty where it is not simple after all.
 std::vector<std::array<Corner, 3>> clip_ears(Polygon polygon, double precision);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

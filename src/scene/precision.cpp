@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 Precision precision_of(const std::vector<glm::dvec3>& positions) {
     constexpr double kFloatUlp = 0x1p-23;
@@ -14,4 +14,4 @@ Precision precision_of(const std::vector<glm::dvec3>& positions) {
     return {weld, 2 * weld};
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

@@ -3,7 +3,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// What two coordinates of a scene must differ by to differ at all. Files carry floats or about six
 /// decimal digits, and both are absolute once objects have been placed: the largest coordinate
@@ -16,4 +16,4 @@ struct Precision {
 
 Precision precision_of(const std::vector<glm::dvec3>& positions);
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

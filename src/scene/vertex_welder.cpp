@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace hemirad {
+namespace hemirad::meshing {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
@@ -87,4 +87,4 @@ void VertexWelder::grow() {
     for (std::uint32_t v = 0; v < positions_.size(); ++v) link(v);
 }
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing

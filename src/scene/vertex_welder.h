@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace hemirad {
+namespace hemirad::meshing {
 
 /// Gives every position an index, and positions within a tolerance of each other the same one. The
 /// first to come stays, bit for bit; whoever comes later is moved to it.
@@ -35,4 +35,4 @@ class VertexWelder {
     std::vector<std::uint32_t> next_;   ///< next vertex in the same bucket
 };
 
-}  // namespace hemirad
+}  // namespace hemirad::meshing
