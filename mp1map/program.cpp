@@ -11,22 +11,31 @@ std::string rounding_option(const Device& device) {
                : "";
 }
 
+cl::Program built(const Device& device, const std::string& source, const std::string& options) {
+    cl::Program program(device.context(), source);
+    try {
+        program.build(device.handle(),
+                      ("-cl-std=CL1.2" + rounding_option(device) + " " + options).c_str());
+    } catch (const cl::BuildError&) {
+        throw DeviceError("the kernels do not compile on " + device.summary().name + ":\n" +
+                          program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle()));
+    }
+    return program;
+}
+
 }  // namespace
 
-Kernel build_kernel(const Device& device, const std::string& name, const std::string& source,
-                    const std::string& options) {
+std::map<std::string, Kernel> build_kernels(const Device& device,
+                                            const std::vector<std::string>& names,
+                                            const std::string& source, const std::string& options) {
     try {
-        cl::Program program(device.context(), source);
-        try {
-            program.build(device.handle(),
-                          ("-cl-std=CL1.2" + rounding_option(device) + " " + options).c_str());
-        } catch (const cl::BuildError&) {
-            throw DeviceError(name + ".cl does not compile on " + device.summary().name + ":\n" +
-                              program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle()));
-        }
-        return {name, cl::Kernel(program, name.c_str())};
+        const cl::Program program = built(device, source, options);
+        std::map<std::string, Kernel> kernels;
+        for (const auto& name : names)
+            kernels.emplace(name, Kernel{name, cl::Kernel(program, name.c_str())});
+        return kernels;
     } catch (const cl::Error& error) {
-        throw DeviceError(name + ": " + error.what() + " failed with OpenCL error " +
+        throw DeviceError(std::string("kernels: ") + error.what() + " failed with OpenCL error " +
                           std::to_string(error.err()));
     }
 }

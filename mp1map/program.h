@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "mp1map/device.h"
 
@@ -12,9 +14,10 @@ struct Kernel {
     cl::Kernel handle;
 };
 
-/// Compiles `source`, whose entry point is `name`. `options` as for the OpenCL C compiler.
-/// Throws DeviceError with the build log.
-Kernel build_kernel(const Device& device, const std::string& name, const std::string& source,
-                    const std::string& options);
+/// Compiles `source`, which holds a kernel of each of the names, as one program: the compiler reads
+/// its built-ins once. `options` as for the OpenCL C compiler. Throws DeviceError with the build log.
+std::map<std::string, Kernel> build_kernels(const Device& device,
+                                            const std::vector<std::string>& names,
+                                            const std::string& source, const std::string& options);
 
 }  // namespace mp1map

@@ -1,7 +1,6 @@
 #include "solver/shot_pipeline.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -16,10 +15,6 @@ constexpr std::uint32_t kWidestLanes = 16;
 constexpr std::uint32_t kPrefixPes = 64, kReducePes = 64;
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
-
-constexpr std::array kKernelNames = {
-    "init_plane", "aim_hemisphere", "cull_patches",    "set_up_projection", "count_areas",
-    "prefix_sum", "bin_areas",      "project_patches", "update_radiosity",  "choose_shooter"};
 
 std::uint32_t quotient_up(std::uint64_t value, std::uint64_t divisor) {
     return static_cast<std::uint32_t>((value + divisor - 1) / divisor);
@@ -62,6 +57,13 @@ device::Shot first_shot() {
 }
 
 }  // namespace
+
+const std::vector<std::string>& kernel_names() {
+    static const std::vector<std::string> names = {
+        "init_plane", "aim_hemisphere", "cull_patches",    "set_up_projection", "count_areas",
+        "prefix_sum", "bin_areas",      "project_patches", "update_radiosity",  "choose_shooter"};
+    return names;
+}
 
 std::uint64_t disk_proxel_count(std::uint32_t resolution) {
     const std::int64_t n = resolution;
@@ -139,10 +141,9 @@ void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSet
     const auto start = std::chrono::steady_clock::now();
     const std::string options =
         build_options(array_, resolution_, corner_count, band_count_, settings.keep_owners);
-    for (const char* name : kKernelNames)
-        kernels_.emplace(name,
-                         mp1map::build_kernel(device, name,
-                                              kernel_source(name, settings.kernels_dir), options));
+    std::string source;
+    for (const auto& name : kernel_names()) source += kernel_source(name, settings.kernels_dir);
+    kernels_ = mp1map::build_kernels(device, kernel_names(), source, options);
     build_seconds_ =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

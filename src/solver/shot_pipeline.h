@@ -103,6 +103,9 @@ class ShotPipeline {
     mp1map::Plural<device::BlockSummary> summaries_;
 };
 
+/// The files of kernels/ that a pipeline is made of, in the order of a shot.
+const std::vector<std::string>& kernel_names();
+
 /// Proxels whose centre lies in the disk (sec. 1.3.2), of resolution^2.
 std::uint64_t disk_proxel_count(std::uint32_t resolution);
 
