@@ -97,8 +97,7 @@ class CellCutter {
         return halves;
     }
 
-    Corner cross(Corner a, Corner b, int axis, double line) {
-        if (b.vertex < a.vertex) std::swap(a, b);
+    Corner cross(const Corner& a, const Corner& b, int axis, double line) {
         const double fraction = (line - a.at[axis]) / (b.at[axis] - a.at[axis]);
         const glm::dvec3 from = vertices_[a.vertex];
         return corner(vertices_.add(from + fraction * (vertices_[b.vertex] - from)));

@@ -22,8 +22,8 @@ struct CellPiece {
 /// Cuts the group's faces along the surface's grid; sorted by cell. New vertices go to the welder.
 ///
 /// A vertex within Precision::plane of a grid line counts as on it and stays where it is, so
-/// nothing is moved and no sliver arises beside a line; where an edge crosses a line is computed
-/// from the edge's ends in one order, so that both of its faces get the same vertex.
+/// nothing is moved and no sliver arises beside a line. Both faces of an edge that crosses a line
+/// get the same vertex there: the second one's differs by rounding only and is welded.
 std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group,
                                       const Surface& surface, const Precision& precision,
                                       VertexWelder& vertices);

@@ -97,6 +97,8 @@ std::size_t find_straight_corner(const Polygon& polygon, double precision) {
     return polygon.size();
 }
 
+bool points_up(const glm::dvec2& edge) { return edge.y > 0 || (edge.y == 0 && edge.x > 0); }
+
 }  // namespace
 
 double area(const Polygon& polygon) {
@@ -132,16 +134,18 @@ Polygon without_straight_corners(Polygon polygon, double precision) {
     return polygon;
 }
 
-// The fan from the first corner rejects outlines that turn left everywhere but go round twice.
+// Where every corner turns left, the outline goes round as often as its edges come to point
+// upwards.
 bool is_convex(const Polygon& polygon) {
-    if (polygon.size() < 3) return false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const std::size_t n = polygon.size();
+    if (n < 3) return false;
+    int rounds = 0;
+    for (std::size_t i = 0; i < n; ++i) {
         const auto [a, b, c] = corner_triangle(polygon, i);
         if (turn(a, b, c) <= 0) return false;
+        if (!points_up(b.at - a.at) && points_up(c.at - b.at)) ++rounds;
     }
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        if (turn(polygon[0], polygon[i], polygon[i + 1]) <= 0) return false;
-    return true;
+    return rounds == 1;
 }
 
 bool crosses_itself(const Polygon& polygon) {

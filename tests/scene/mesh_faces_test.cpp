@@ -106,6 +106,22 @@ TEST(Faces, PentagramIsDropped) {
     EXPECT_EQ(mesh.dropped_degenerate, 1u);
 }
 
+TEST(Faces, ThatGoRoundTwiceAreDropped) {
+    const Mesh mesh = mesh_of({rectangle(9, 0, 10, 1),
+                               {{0, 0, 0},
+                                {3, 0, 0},
+                                {3, 3, 0},
+                                {0, 3, 0},
+                                {0.5, 1, 0},
+                                {2, 1, 0},
+                                {2, 2, 0},
+                                {-1, 2, 0}}},
+                              kUncut);
+
+    EXPECT_EQ(mesh.dropped_degenerate, 1u);
+    EXPECT_EQ(mesh.patches.size(), 1u);
+}
+
 TEST(Faces, WarpedQuadIsSplitAlongItsShorterDiagonal) {
     const Mesh mesh = mesh_of({{{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}}, 10);
 

@@ -221,13 +221,24 @@ TEST(Grid, FragmentsOfAFaceAddUpToItsArea) {
 }
 
 TEST(Grid, FragmentsOfACutCellGoToTheRightPatches) {
-    const Mesh mesh = mesh_of(Faces{{{0, 0, 0}, {3, 0, 0}, {2, 2, 0}, {0, 2, 0}}}, 1.7);
+    const Mesh mesh =
+        mesh_of(Faces{{{0, 0, 0}, {3, 0, 0}, {3, 2.5, 0}, {2.5, 3, 0}, {0, 3, 0}}}, 3);
 
-    std::map<std::uint32_t, double> of_patch;
-    for (const auto& [face, patch, area] : mesh.fragments) of_patch[patch] += area;
-    for (const auto& [patch, area] : of_patch)
+    ASSERT_EQ(mesh.patches.size(), 2u);
+    ASSERT_EQ(mesh.fragments.size(), 2u);
+    for (const auto& [face, patch, area] : mesh.fragments)
         EXPECT_NEAR(area, mesh.area(mesh.patches[patch]), 1e-14);
-    EXPECT_EQ(of_patch.size(), mesh.patches.size());
+    EXPECT_NEAR(total_area(mesh), 9 - 0.125, 1e-14);
+}
+
+TEST(Grid, VertexBesideAGridLineCountsAsOnIt) {
+    const double beside = 1 + 3e-7;
+
+    const Mesh mesh = mesh_of(Faces{rectangle(0, 0, beside, 1), rectangle(beside, 0, 2, 1)}, 1);
+
+    ASSERT_EQ(mesh.patches.size(), 2u);
+    EXPECT_DOUBLE_EQ(mesh.area(mesh.patches[0]), beside);
+    EXPECT_DOUBLE_EQ(total_area(mesh), 2);
 }
 
 // Every directed edge of a patch meets its reverse, or lies on edges of others end to end.
