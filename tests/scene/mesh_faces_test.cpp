@@ -122,6 +122,13 @@ TEST(Faces, ThatGoRoundTwiceAreDropped) {
     EXPECT_EQ(mesh.patches.size(), 1u);
 }
 
+TEST(Faces, CrossedOnesAreDroppedAlsoWhereEarsCouldBeClipped) {
+    const Mesh mesh = mesh_of(
+        {rectangle(9, 0, 10, 1), {{2, 3, 0}, {0, 0, 0}, {3, 0, 0}, {1, 1, 0}, {1, 0, 0}}}, kUncut);
+
+    EXPECT_EQ(mesh.dropped_degenerate, 1u);
+}
+
 TEST(Faces, WarpedQuadIsSplitAlongItsShorterDiagonal) {
     const Mesh mesh = mesh_of({{{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}}, 10);
 

@@ -220,6 +220,16 @@ TEST(Grid, FragmentsOfAFaceAddUpToItsArea) {
         mesh.fragments, {}, [](const Fragment& f) { return std::pair(f.face, f.patch); }));
 }
 
+TEST(Grid, ConcaveFaceHasOneFragmentAPatch) {
+    const std::vector<glm::dvec3> outline{{0, 0, 0}, {4, 0, 0}, {4, 1, 0},
+                                          {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+
+    const Mesh mesh = mesh_of(Faces{outline}, 0.5);
+
+    ASSERT_EQ(mesh.fragments.size(), 24u);
+    for (const Fragment& fragment : mesh.fragments) EXPECT_NEAR(fragment.area, 0.25, 1e-14);
+}
+
 TEST(Grid, FragmentsOfACutCellGoToTheRightPatches) {
     const Mesh mesh =
         mesh_of(Faces{{{0, 0, 0}, {3, 0, 0}, {3, 2.5, 0}, {2.5, 3, 0}, {0, 3, 0}}}, 3);
