@@ -20,12 +20,12 @@ static void broadcast(const __global Projection* projections, const __global int
 // One patch in one column of areas: each PE evaluates its proxels of the rows that the bounding
 // rectangle touches.
 static void project(const __local Projection* patch, int tile, int area_column, int pe,
-                    const __global float* roots, __local float* depth, __local int* owner) {
+                    const __global real_v* roots, __local real_v* depth, __local int_v* owner) {
     const int column = proxel_column(tile, area_column, pe);
     if (column > last_of(patch->columns) || column + LANES <= first_of(patch->columns)) return;
     const real_v u = to_real_v(centre_numerator(column + LANE_INDEX)) * (1.0f / RESOLUTION);
     real_v edge_u[CORNERS];
-    for (int k = 0; k < CORNERS; ++k)
+    UNROLLED for (int k = 0; k < CORNERS; ++k)
         edge_u[k] = fma((real_v)patch->edge[k][0], u, (real_v)kEdgeMargin);
     const real_v depth_u = patch->depth[0] * u;
 
@@ -35,43 +35,42 @@ static void project(const __local Projection* patch, int tile, int area_column, 
     for (int area_row = first; area_row <= last; ++area_row) {
         const int at = plural_index(area_row * AREA_COLUMNS + area_column, pe);
         const float v = (2 * proxel_row(tile, area_row, pe) + 1 - RESOLUTION) * (1.0f / RESOLUTION);
-        const real_v root = load_v(at, roots);
+        const real_v root = roots[at];
         int_v outside = 0;  // the sign bit of any arc's value
-        for (int k = 0; k < CORNERS; ++k)
+        UNROLLED for (int k = 0; k < CORNERS; ++k)
             outside |= as_int_v(fma((real_v)patch->edge[k][2], root,
                                     fma((real_v)patch->edge[k][1], (real_v)v, edge_u[k])));
         const real_v distance = fma((real_v)patch->depth[2], root,
                                     fma((real_v)patch->depth[1], (real_v)v, depth_u));
-        const real_v nearest = load_v(at, depth);
+        const real_v nearest = depth[at];
         const int_v nearer = less_v(distance, nearest) & ~(outside >> 31);
-        if (!any_v(nearer)) continue;
-        store_v(choose_v(nearer, distance, nearest), at, depth);
-        store_v(select(load_v(at, owner), (int_v)patch->patch, nearer), at, owner);
+        depth[at] = choose_v(nearer, distance, nearest);
+        owner[at] = select(owner[at], (int_v)patch->patch, nearer);
     }
 }
 
 // Proxels begin as `escaped`, at infinity where -1/rho = 0; those outside the disk belong to
 // escaped + 1, nearer than any patch.
-static void clear_plane(int pe, int escaped, const __global float* roots, __local float* depth,
-                        __local int* owner) {
+static void clear_plane(int pe, int escaped, const __global real_v* roots, __local real_v* depth,
+                        __local int_v* owner) {
     for (int layer = 0; layer < LAYERS; ++layer) {
         const int at = plural_index(layer, pe);
-        const int_v in_disk = less_v((real_v)0.0f, load_v(at, roots));
-        store_v(choose_v(in_disk, (real_v)0.0f, (real_v)-INFINITY), at, depth);
-        store_v(select((int_v)(escaped + 1), (int_v)escaped, in_disk), at, owner);
+        const int_v in_disk = less_v((real_v)0.0f, roots[at]);
+        depth[at] = choose_v(in_disk, (real_v)0.0f, (real_v)-INFINITY);
+        owner[at] = select((int_v)(escaped + 1), (int_v)escaped, in_disk);
     }
 }
 
-__kernel void project_patches(const __global Shot* shot, const __global float* roots,
+__kernel void project_patches(const __global Shot* shot, const __global real_v* roots,
                               const __global Projection* projections, const __global int* list_end,
                               const __global int* lists, int stack_count, int escaped,
-                              __global int* proxel_count, __global int* owners) {
-    __local float depth[TILE_PROXELS];
-    __local int owner[TILE_PROXELS];
+                              __global int* proxel_count, __global int_v* owners) {
+    __local real_v depth[TILE_VECTORS];
+    __local int_v owner[TILE_VECTORS];
     __local Projection batch[kBroadcastBatch];
     const int tile = get_group_id(0), pe = get_local_id(0);
     if (shot->status != kRunning) return;
-    const __global float* tile_roots = roots + tile * TILE_PROXELS;
+    const __global real_v* tile_roots = roots + tile * TILE_VECTORS;
 
     clear_plane(pe, escaped, tile_roots, depth, owner);
     const int begin = tile == 0 ? 0 : list_end[tile * stack_count - 1];
@@ -88,7 +87,6 @@ __kernel void project_patches(const __global Shot* shot, const __global float* r
     sum_form_factors(owner, pe, proxel_count);
 #ifdef KEEP_OWNERS
     for (int layer = 0; layer < LAYERS; ++layer)
-        store_v(load_v(plural_index(layer, pe), owner),
-                tile * TILE_PROXELS + plural_index(layer, pe), owners);
+        owners[tile * TILE_VECTORS + plural_index(layer, pe)] = owner[plural_index(layer, pe)];
 #endif
 }

@@ -17,10 +17,10 @@ static void shoot_at(const __global Shot* shot, const __global float* shot_flux,
         const real_v flux = form_factor * shot_flux[band];
         real_v sum = load_v(at, received), rest = load_v(at, received_rest);
         add_compensated(&sum, &rest, flux);
-        store_v(sum, at, received);
-        store_v(rest, at, received_rest);
+        *real_vectors(received + at) = sum;
+        *real_vectors(received_rest + at) = rest;
         const real_v left = choose_v(is_shooter, (real_v)0.0f, load_v(at, unshot));
-        store_v(fma(load_v(at, reflectance), flux, left), at, unshot);
+        *real_vectors(unshot + at) = fma(load_v(at, reflectance), flux, left);
     }
 }
 
@@ -41,7 +41,7 @@ __kernel void update_radiosity(__global Shot* shot, const __global float* shot_f
             const int patch = block * kReduceBlock + step * LANES;
             const int_v counts = load_v(patch, proxel_count);
             if (any_v(counts != 0)) {
-                store_v((int_v)0, patch, proxel_count);
+                *int_vectors(proxel_count + patch) = (int_v)0;
                 for (int lane = 0; lane < LANES; ++lane)
                     summary.proxels += int_lane_of(counts, lane);
             }

@@ -6,14 +6,14 @@
 
 #include "cli/command_line.h"
 #include "cli/exit_codes.h"
-#include "cli/text.h"
 #include "errors.h"
 #include "mp1map/device.h"
+#include "scene/printable.h"
 
 namespace {
 
 int complain(std::string_view fault, int exit_code) {
-    std::cerr << hemirad::escaped(fault) << '\n';
+    std::cerr << hemirad::printable(fault) << '\n';
     return exit_code;
 }
 

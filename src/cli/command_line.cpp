@@ -6,8 +6,8 @@
 #include "cli/exit_codes.h"
 #include "cli/info.h"
 #include "cli/solve.h"
-#include "cli/text.h"
 #include "errors.h"
+#include "scene/printable.h"
 
 namespace hemirad {
 namespace {
@@ -22,7 +22,7 @@ void reject_stray_arguments(const CLI::App& app) {
     const std::string kind = is_option          ? "unknown option"
                              : commands.empty() ? "unknown command"
                                                 : "one argument too many,";
-    throw InputError("hemirad: " + kind + " \"" + escaped(stray.front()) + "\"; see hemirad" +
+    throw InputError("hemirad: " + kind + " \"" + printable(stray.front()) + "\"; see hemirad" +
                      name + " --help");
 }
 

@@ -6,14 +6,15 @@
 #include "cli/text.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
+#include "scene/printable.h"
 
 namespace hemirad {
 namespace {
 
 void print_device(std::ostream& out, const mp1map::DeviceSummary& device) {
     const auto array = mp1map::fit_pe_array(device, {});
-    out << device.index << ": " << escaped(device.name) << "\n"
-        << "   platform         " << escaped(device.platform) << ", " << escaped(device.version)
+    out << device.index << ": " << printable(device.name) << "\n"
+        << "   platform         " << printable(device.platform) << ", " << printable(device.version)
         << "\n"
         << "   compute units    " << device.compute_units << "\n"
         << "   max work-group   " << device.max_work_group << "\n"

@@ -13,6 +13,7 @@
 #include "cli/text.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
+#include "scene/printable.h"
 #include "scene/read_scene.h"
 #include "solver/bands.h"
 
@@ -30,7 +31,7 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh, dou
         return std::count_if(mesh.patches.begin(), mesh.patches.end(), matches);
     };
     const auto triangles = count([](const Patch& patch) { return patch.is_triangle(); });
-    out << "file         " << escaped(scene.file) << '\n'
+    out << "file         " << printable(scene.file) << '\n'
         << "faces        " << mesh.face_count << " (" << mesh.dropped_degenerate
         << " degenerate and " << mesh.dropped_duplicate << " duplicate ones dropped)\n"
         << "objects      " << scene.objects.size() << '\n'
@@ -44,7 +45,7 @@ std::string object_names(const Mesh& mesh, const Part& part) {
     constexpr std::size_t kInFull = 3;
     std::string names;
     for (std::size_t i = 0; i < std::min(part.objects.size(), kInFull); ++i)
-        names += (i == 0 ? "" : ", ") + escaped(mesh.objects[part.objects[i]]);
+        names += (i == 0 ? "" : ", ") + printable(mesh.objects[part.objects[i]]);
     if (part.objects.size() > kInFull)
         names += " and " + std::to_string(part.objects.size() - kInFull) + " more";
     return names;
@@ -75,15 +76,15 @@ void print_bands(std::ostream& out, const Mesh& mesh) {
     const auto plan = plan_bands(mesh);
     out << "bands        ";
     for (std::size_t band = 0; band < mesh.bands.size(); ++band)
-        out << (band == 0 ? "" : " ") << escaped(mesh.bands[band]);
+        out << (band == 0 ? "" : " ") << printable(mesh.bands[band]);
     out << "; solved: " << plan.solved.size();
     if (plan.solved.size() < mesh.bands.size())
         out << ", since others have the same reflectances and proportional emission";
     out << '\n';
     for (std::size_t band = 0; band < mesh.bands.size(); ++band)
-        out << "  " << escaped(mesh.bands[band]) << ": emits "
+        out << "  " << printable(mesh.bands[band]) << ": emits "
             << number_text(emitted_flux(mesh, band)) << " W, solved as "
-            << escaped(mesh.bands[plan.solved[plan.solution[band]]]) << '\n';
+            << printable(mesh.bands[plan.solved[plan.solution[band]]]) << '\n';
 }
 
 void print_memory(std::ostream& out, const Mesh& mesh, std::uint32_t resolution) {
@@ -95,7 +96,7 @@ void print_memory(std::ostream& out, const Mesh& mesh, std::uint32_t resolution)
     const auto device = mp1map::Device::open("");
     const auto array = mp1map::fit_pe_array(device.summary(), {});
     out << bytes_text(device_bytes(mesh, resolution, array)) << " of "
-        << bytes_text(device.summary().global_memory) << " on " << escaped(device.summary().name)
+        << bytes_text(device.summary().global_memory) << " on " << printable(device.summary().name)
         << " at --resolution " << resolution << '\n';
 }
 
@@ -109,7 +110,7 @@ int print_info(InfoOptions options, std::ostream& out) {
     print_memory(out, mesh, options.resolution);
     const auto warnings = warnings_of(scene, mesh);
     out << "warnings     " << warnings.size() << '\n';
-    for (const auto& warning : warnings) out << "  " << escaped(warning) << '\n';
+    for (const auto& warning : warnings) out << "  " << printable(warning) << '\n';
     return kDone;
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "cli/text.h"
 #include "errors.h"
+#include "scene/printable.h"
 
 namespace hemirad {
 namespace {
@@ -23,7 +23,7 @@ std::optional<Number> parsed(std::string_view text) {
 }  // namespace
 
 void reject(const OptionValue& value, std::string_view accepted) {
-    throw InputError("hemirad: " + std::string(value.option) + " \"" + escaped(value.text) +
+    throw InputError("hemirad: " + std::string(value.option) + " \"" + printable(value.text) +
                      "\": expected " + std::string(accepted));
 }
 

@@ -1,11 +1,11 @@
 #include "cli/outputs.h"
 
-#include "cli/text.h"
 #include "errors.h"
 #include "lightmap/atomic_file.h"
 #include "lightmap/rasterize.h"
 #include "lightmap/write_exr.h"
 #include "lightmap/write_preview.h"
+#include "scene/printable.h"
 
 namespace hemirad {
 namespace {
@@ -18,15 +18,19 @@ void check_ending(std::string_view option, const fs::path& file, std::string_vie
     reject({option, file.native()}, "a name ending in " + std::string(ending));
 }
 
+/// The same for every way to write a file's name; weakly_canonical alone leaves "a" as it is where
+/// there is no such file yet.
+fs::path place_of(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)); }
+
 void check_distinct(const SolveOptions& options) {
     std::vector<fs::path> files = output_files(options);
     if (options.report) files.push_back(*options.report);
-    std::vector<fs::path> taken{fs::weakly_canonical(options.scene)};
+    std::vector<fs::path> taken{place_of(options.scene)};
     for (const auto& file : files) {
-        const auto place = fs::weakly_canonical(file);
+        const auto place = place_of(file);
         for (const auto& other : taken)
             if (place == other && !(fs::exists(place) && !fs::is_regular_file(place)))
-                throw InputError("hemirad: " + escaped(file.string()) + ": would overwrite " +
+                throw InputError("hemirad: " + printable(file.string()) + ": would overwrite " +
                                  (other == taken.front() ? "the scene" : "another output"));
         taken.push_back(place);
     }

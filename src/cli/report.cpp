@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/sha256.h"
@@ -40,9 +41,11 @@ Json device_json(const Outcome& outcome) {
 
 Json settings_json(const SolveOptions& options) {
     Json settings = Json::object();
-    for (const auto& [name, value] : deciding_options(options)) {
+    for (const auto& [option, value] : deciding_options(options)) {
+        auto name = option.substr(2);
+        std::replace(name.begin(), name.end(), '-', '_');
         const auto number = Json::parse(value, nullptr, false);
-        settings[name.substr(2)] = number.is_number() ? number : Json(value);
+        settings[name] = number.is_number() ? number : Json(value);
     }
     return settings;
 }

@@ -118,7 +118,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
 }
 
 void add_scene(CLI::App& command, std::filesystem::path& scene) {
-    command.add_option("SCENE", scene, "a .gltf, .glb or .obj file")->required()->type_name("");
+    add_text(command, {"SCENE", "", "a .gltf, .glb or .obj file"}, scene)->required();
 }
 
 void add_resolution(CLI::App& command, std::uint32_t& resolution) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/text.h"
+#include "scene/printable.h"
 
 namespace hemirad {
 namespace {
@@ -36,7 +37,7 @@ void print_ledger(std::ostream& out, const Solution& solution) {
     for (std::size_t band = 0; band < solution.bands.size(); ++band) {
         const auto& ledger = solution.ledger[band];
         print(out, "%-8s %12.6g %12.6g %12.6g %12.6g %10.2g\n",
-              escaped(solution.bands[band]).c_str(), ledger.emitted, ledger.absorbed,
+              printable(solution.bands[band]).c_str(), ledger.emitted, ledger.absorbed,
               ledger.escaped, ledger.unshot, ledger.residual());
     }
 }
@@ -58,16 +59,16 @@ std::vector<std::string> warnings_of(const Scene& scene, const Mesh& mesh) {
 }
 
 void print_warnings(std::ostream& out, const std::vector<std::string>& warnings) {
-    for (const auto& warning : warnings) out << "warning: " << escaped(warning) << '\n';
+    for (const auto& warning : warnings) out << "warning: " << printable(warning) << '\n';
 }
 
 void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh,
                 const mp1map::DeviceSummary& device, const mp1map::PeArray& array) {
-    out << escaped(options.scene.filename().string()) << ": "
+    out << printable(options.scene.filename().string()) << ": "
         << counted(mesh.patches.size(), "patch", "patches") << " on "
         << counted(mesh.surfaces.size(), "surface") << ", " << (mesh.closed ? "closed" : "open")
         << '\n'
-        << escaped(device.name) << ": " << counted(device.compute_units, "compute unit") << ", "
+        << printable(device.name) << ": " << counted(device.compute_units, "compute unit") << ", "
         << array.description() << '\n';
 }
 
@@ -84,7 +85,7 @@ void print_summary(std::ostream& out, const SolveOptions& options, const Outcome
             << duration_text(outcome.seconds.build_kernels) << '\n';
         print_kernels(out, outcome);
     }
-    for (const auto& file : outcome.outputs) out << "wrote " << escaped(file.string()) << '\n';
+    for (const auto& file : outcome.outputs) out << "wrote " << printable(file.string()) << '\n';
 }
 
 }  // namespace hemirad

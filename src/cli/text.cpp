@@ -15,33 +15,7 @@ std::string formatted(const char* format, Values... values) {
     return text.data();
 }
 
-std::string escaped_character(unsigned char c) {
-    if (c == '\n') return "\\n";
-    if (c == '\t') return "\\t";
-    return formatted("\\x%02x", c);
-}
-
-/// U+0080 to U+009F, which terminals obey like the ASCII ones, in UTF-8.
-bool starts_c1_control(std::string_view text) {
-    return text.size() >= 2 && text[0] == '\xc2' && static_cast<unsigned char>(text[1]) < 0xa0;
-}
-
 }  // namespace
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto c = static_cast<unsigned char>(text[i]);
-        if (starts_c1_control(text.substr(i))) {
-            result += escaped_character(c) + escaped_character(text[++i]);
-        } else if (c < 0x20 || c == 0x7f) {
-            result += escaped_character(c);
-        } else {
-            result += text[i];
-        }
-    }
-    return result;
-}
 
 std::string number_text(double number) {
     std::array<char, 32> text{};

@@ -6,10 +6,6 @@
 
 namespace hemirad {
 
-/// The text with its control characters written as \n, \t or \x1b: names out of files and
-/// arguments must not steer a terminal or break a line in two.
-std::string escaped(std::string_view text);
-
 /// The shortest text that reads back as the same number.
 std::string number_text(double number);
 

@@ -45,21 +45,6 @@ InputFile read_input_file(const std::filesystem::path& path) {
     return file;
 }
 
-std::string printable(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code >= 0x20 && code != 0x7f) {
-            result += c;
-            continue;
-        }
-        std::array<char, 5> escape{};
-        std::snprintf(escape.data(), escape.size(), "\\x%02x", code);
-        result += escape.data();
-    }
-    return result;
-}
-
 std::string in_quotes(std::string_view text) {
     std::string result(1, '"');
     result += printable(text);

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "scene/printable.h"
 #include "scene/scene.h"
 
 namespace hemirad {
@@ -19,8 +20,6 @@ struct InputFile {
 /// Throws InputError for what is missing, a folder, unreadable or empty.
 InputFile read_input_file(const std::filesystem::path& path);
 
-/// Control characters become \xNN, so that a name cannot forge or break a line of output.
-std::string printable(std::string_view text);
 /// The printable text in double quotes.
 std::string in_quotes(std::string_view text);
 /// At least two decimals, and as many as tell the value from its rounding: 1.20, 1.00001.
