@@ -1,0 +1,477 @@
+#!/usr/bin/env python3
+"""The program as its users meet it: exit codes, messages, files. HEMIRAD names the binary."""
+import hashlib
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import scenes
+
+HEMIRAD = os.environ["HEMIRAD"]
+QUICK = ("--resolution", "64", "--patch-size", "0.25")
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write("scene.mtl", scenes.MATERIALS)
+        self.write("scene.obj", scenes.obj())
+
+    def write(self, name, content):
+        content = content.encode() if isinstance(content, str) else content
+        (self.folder / name).write_bytes(content)
+
+    def run_hemirad(self, *arguments, environment=None, **options):
+        return subprocess.run([HEMIRAD, *arguments], cwd=self.folder, env=environment, text=True,
+                              capture_output=True, timeout=120, check=False, **options)
+
+    def solve(self, *arguments, scene="scene.obj", **options):
+        return self.run_hemirad("solve", scene, *QUICK, *arguments, **options)
+
+    def assert_done(self, result):
+        self.assertEqual(0, result.returncode, result.stderr)
+
+    def assert_refused(self, result, begins, exit_code=1, says=""):
+        """One line that tells whose fault it is, nothing written, nothing half written."""
+        self.assertEqual(exit_code, result.returncode, result.stderr)
+        self.assertEqual("", result.stdout)
+        self.assertEqual(1, result.stderr.count("\n"), result.stderr)
+        self.assertTrue(result.stderr.startswith(begins), result.stderr)
+        self.assertIn(says, result.stderr)
+        self.assertTrue(result.stderr[:-1].isprintable(), ascii(result.stderr))
+        inputs = (".obj", ".mtl", ".gltf", ".glb", ".bin", ".txt")
+        left = [p.name for p in self.folder.iterdir() if p.is_file() and p.suffix not in inputs]
+        self.assertEqual([], left)
+
+
+class BadScenes(CommandLine):
+    def assert_scene_refused(self, name, content, says=""):
+        if content is not None:
+            self.write(name, content)
+        for command in (("solve", name, *QUICK), ("info", name)):
+            if command[0] == "info" and says == "emits":
+                continue  # a scene without light is still a scene
+            with self.subTest(command=command[0]):
+                self.assert_refused(self.run_hemirad(*command), name + ": ", says=says)
+
+    def test_missing_file(self):
+        self.assert_scene_refused("nowhere.gltf", None)
+
+    def test_folder(self):
+        (self.folder / "folder.obj").mkdir()
+        self.assert_scene_refused("folder.obj", None)
+
+    def test_empty_file(self):
+        for name in ("empty.obj", "empty.gltf", "empty.glb"):
+            self.assert_scene_refused(name, b"")
+
+    def test_unknown_format(self):
+        self.assert_scene_refused("scene.txt", "v 0 0 0\n")
+
+    def test_not_gltf(self):
+        for content in (b"hello", b"{}", b"[]", b"null", b'{"asset": 3}', b"\xff\xfe\x00{"):
+            self.assert_scene_refused("bad.gltf", content)
+
+    def test_glb_truncated_anywhere(self):
+        whole = scenes.glb()
+        for length in (1, 4, 11, 12, 19, 20, 40, len(whole) - 1):
+            self.assert_scene_refused("bad.glb", whole[:length])
+
+    def test_glb_that_promises_too_much(self):
+        whole = scenes.glb()
+        self.assert_scene_refused("bad.glb", whole[:12] + b"\xff\xff\xff\x7f" + whole[16:])
+
+    def test_index_out_of_range(self):
+        self.assert_scene_refused("bad.gltf", scenes.gltf(indices=(0, 1, 9)))
+        self.assert_scene_refused("bad.obj", scenes.obj(faces="f 1 2 99\n"))
+        self.assert_scene_refused("bad.obj", scenes.obj(faces="f 1 2 -99\n"))
+
+    def test_member_out_of_range(self):
+        for member in ({"nodes": [{"mesh": 7}]}, {"scenes": [{"nodes": [7]}]}, {"scene": 7},
+                       {"buffers": []}, {"bufferViews": []}, {"accessors": []}):
+            self.assert_scene_refused("bad.gltf", scenes.gltf(**member))
+
+    def test_node_that_is_its_own_child(self):
+        self.assert_scene_refused("bad.gltf", scenes.gltf(nodes=[{"mesh": 0, "children": [0]}]))
+
+    def test_coordinates_that_are_no_numbers(self):
+        for x in (float("nan"), float("inf"), float("-inf")):
+            self.assert_scene_refused(
+                "bad.gltf", scenes.gltf(positions=((x, 0, 0), (1, 0, 0), (0, 1, 0))))
+        for x in ("nan", "inf", "1e999", "one"):
+            self.assert_scene_refused(
+                "bad.obj", scenes.obj(vertices=f"v {x} 0 0\nv 1 0 0\nv 1 1 0\n", faces="f 1 2 3\n"))
+
+    def test_reflectance_out_of_range(self):
+        for reflectance in (-0.1, 1.2):
+            self.assert_scene_refused(
+                "bad.gltf", scenes.gltf(material=scenes.lamp(reflectance)), "lamp")
+            self.write("scene.mtl", f"newmtl white\nKd {reflectance} 0 0\nnewmtl lamp\nKe 1 1 1\n")
+            self.assert_scene_refused("bad.obj", scenes.obj(), "white")
+
+    def test_negative_emission(self):
+        self.write("scene.mtl", "newmtl white\nKd 0 0 0\nnewmtl lamp\nKe -1 1 1\n")
+        self.assert_scene_refused("bad.obj", scenes.obj(), "lamp")
+
+    def test_no_emitter(self):
+        self.write("scene.mtl", "newmtl white\nKd .5 .5 .5\nnewmtl lamp\nKd .5 .5 .5\n")
+        self.assert_scene_refused("dark.obj", scenes.obj(), "emits")
+
+    def test_no_geometry(self):
+        self.assert_scene_refused("bare.obj", scenes.obj(faces=""))
+        self.assert_scene_refused("bare.gltf", scenes.gltf(meshes=None, nodes=[{"name": "a"}]))
+        self.assert_scene_refused("bare.gltf", scenes.gltf(scenes=None, nodes=None, meshes=None,
+                                                           scene=None))
+
+    def test_only_faces_without_area(self):
+        self.assert_scene_refused("thin.obj", scenes.obj(faces="usemtl lamp\nf 1 2 2\nf 1 1 1\n"))
+
+    def test_name_that_would_steer_a_terminal(self):
+        name = "red\x1b[31m\n.obj"
+        self.assert_refused(self.run_hemirad("solve", name), "red\\x1b[31m")
+
+
+class DoubtfulScenes(CommandLine):
+    def test_degenerate_and_duplicate_faces_are_skipped_with_a_warning(self):
+        extra = "usemtl white\nf 1 4 3 2\nf 1 2 2\n"
+        self.write("scene.obj", scenes.obj(faces=scenes.FACES + extra))
+
+        result = self.solve()
+
+        self.assert_done(result)
+        self.assertIn("warning: scene.obj: ", result.stderr)
+        self.assertIn("(1 degenerate and 1 duplicate ones dropped)",
+                      self.run_hemirad("info", "scene.obj").stdout)
+
+    def test_reflectance_of_one_is_limited_with_one_warning_that_names_the_material(self):
+        self.write("scene.mtl", "newmtl white\nKd 1 1 1\nnewmtl lamp\nKe 1 1 1\n")
+
+        result = self.solve("--quiet")
+
+        self.assert_done(result)
+        self.assertEqual(1, result.stderr.count("\n"), result.stderr)
+        self.assertIn("white", result.stderr)
+
+    def test_light_without_receiver_ends(self):
+        self.write("scene.obj", scenes.obj(faces="usemtl lamp\nf 5 6 7 8\n"))
+
+        result = self.solve()
+
+        self.assert_done(result)
+        self.assertIn("converged", result.stderr)
+
+
+class BadOptions(CommandLine):
+    def assert_rejected(self, *arguments, says):
+        with self.subTest(arguments=arguments):
+            self.assert_refused(self.solve(*arguments), "hemirad: ", says=says)
+
+    def test_values_out_of_range(self):
+        for option, values in {
+                "--shooter-samples": ("0", "-1", "many", "65"),
+                "--patch-size": ("0", "-1", "nan", "1m", ""),
+                "--texel-size": ("0", "inf", "x"),
+                "--max-reflectance": ("1", "0", "-0.5", "nan"),
+                "--backfaces": ("none",),
+                "--tolerance": ("0", "1", "-1e-3", "nan"),
+                "--max-shots": ("0", "-1", "1.5", "99999999999999999999"),
+                "--time-limit": ("0", "-3", "inf"),
+                "--quantity": ("light",),
+                "--compute-units": ("0", "100000"),
+                "--pe": ("4", "4x", "x4", "0x4", "4x4x4", "-4x4", "9999x9999"),
+                "--lanes": ("0", "2", "32"),
+                "--tile": ("64", "0x0"),
+                "--snapshot-every": ("0", "0s", "s", "-1s", "1m"),
+        }.items():
+            for value in values:
+                self.assert_rejected(f"{option}={value}", says=option)
+
+    def test_resolution_out_of_range(self):
+        for value in ("0", "15", "8193", "-64", "64.5", "1e3", "", " 64"):
+            with self.subTest(value=value):
+                self.assert_refused(
+                    self.run_hemirad("solve", "scene.obj", "--resolution", value),
+                    f'hemirad: --resolution "{value}": expected a whole number from 16 to 8192')
+
+    def test_unknown_device(self):
+        self.assert_rejected("--device", "abacus", says="--device")
+        self.assert_rejected("--device", "99", says="--device")
+
+    def test_more_compute_units_than_there_are(self):
+        self.assert_rejected("--compute-units", "60000", says="--compute-units 60000")
+
+    def test_pe_array_larger_than_the_device_allows(self):
+        self.assert_rejected("--pe", "8192x8192", says="--pe 8192x8192")
+
+    def test_unknown_option(self):
+        self.assert_rejected("--colour", "red", says='unknown option "--colour"')
+
+    def test_option_without_value(self):
+        self.assert_rejected("--tolerance", says="--tolerance")
+
+    def test_option_given_twice(self):
+        self.assert_rejected("--tolerance", "0.1", "--tolerance", "0.2", says="--tolerance")
+
+    def test_quiet_and_verbose(self):
+        self.assert_rejected("--quiet", "--verbose", says="--verbose")
+
+    def test_second_scene(self):
+        self.assert_rejected("other.obj", says="other.obj")
+
+    def test_missing_kernels(self):
+        result = self.solve("--kernels", "nowhere")
+        self.assert_refused(result, "nowhere")
+
+    def test_commands(self):
+        for arguments, says in (((), "--help"), (("bake",), "bake"), (("solve",), "SCENE"),
+                                (("info",), "SCENE"), (("devices", "all"), "all"),
+                                (("--loud",), "--loud"), (("solve", ""), "SCENE"),
+                                (("solve", "--x\x1b[1m\n", "scene.obj"), "\\x1b[1m\\x0a")):
+            with self.subTest(arguments=arguments):
+                self.assert_refused(self.run_hemirad(*arguments), "hemirad: ", says=says)
+
+
+class BadOutputs(CommandLine):
+    def test_folder_that_does_not_exist(self):
+        for option, name in (("-o", "no/a.exr"), ("--preview", "no/a.png"),
+                             ("--faces", "no/a.csv"), ("--report", "no/a.json")):
+            with self.subTest(option=option):
+                self.assert_refused(self.solve(option, name), name + ": ", exit_code=3)
+
+    def test_folder_in_the_place_of_the_file(self):
+        (self.folder / "taken.exr").mkdir()
+        self.assert_refused(self.solve("-o", "taken.exr"), "taken.exr: ", exit_code=3)
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_folder_without_write_permission(self):
+        (self.folder / "shut").mkdir(mode=0o555)
+        self.assert_refused(self.solve("-o", "shut/a.exr"), "shut/a.exr: ", exit_code=3)
+
+    def test_full_disk(self):
+        result = self.solve("-o", "/dev/full")
+        self.assert_refused_after_start(result, "/dev/full: ")
+
+    def assert_refused_after_start(self, result, begins):
+        self.assertEqual(3, result.returncode, result.stderr)
+        self.assertTrue(result.stderr.splitlines()[-1].startswith(begins), result.stderr)
+
+    def test_standard_output_on_a_full_disk(self):
+        for arguments in (("devices",), ("info", "scene.obj"), ("--help",), ("--version",)):
+            with open("/dev/full", "w", encoding="ascii") as full:
+                result = subprocess.run([HEMIRAD, *arguments], cwd=self.folder, stdout=full,
+                                        stderr=subprocess.PIPE, check=False)
+            self.assertEqual(3, result.returncode, arguments)
+
+    def test_told_before_the_solve(self):
+        self.write("broken.obj", "not a scene")
+        self.assert_refused(self.solve("-o", "no/a.exr", scene="broken.obj"), "no/a.exr: ",
+                            exit_code=3)
+
+    def test_names_with_an_unfitting_ending(self):
+        self.assert_refused(self.solve("-o", "a.png"), 'hemirad: --output "a.png": ')
+        self.assert_refused(self.solve("--preview", "a.exr"), 'hemirad: --preview "a.exr": ')
+
+    def test_two_outputs_in_one_file(self):
+        self.assert_refused(self.solve("--faces", "a", "--report", "./a"), "hemirad: ./a: ")
+
+    def test_output_over_the_scene(self):
+        before = (self.folder / "scene.obj").read_bytes()
+        self.assert_refused(self.solve("--faces", "scene.obj"), "hemirad: scene.obj: ")
+        self.assertEqual(before, (self.folder / "scene.obj").read_bytes())
+
+
+class Solve(CommandLine):
+    def test_writes_the_lightmap_beside_the_caller_by_default(self):
+        self.assert_done(self.solve())
+        self.assertEqual(b"\x76\x2f\x31\x01", (self.folder / "scene.exr").read_bytes()[:4])
+
+    def test_keeps_standard_output_clean(self):
+        self.assertEqual("", self.solve("--verbose").stdout)
+
+    def test_quiet_says_nothing(self):
+        self.assertEqual("", self.solve("--quiet").stderr)
+
+    def test_prints_the_ledger_of_every_band(self):
+        lines = self.solve().stderr.splitlines()
+        for band in "RGB":
+            self.assertTrue(any(line.split()[0] == band for line in lines), lines)
+
+    def test_writes_preview_and_faces(self):
+        self.assert_done(self.solve("-o", "a.exr", "--preview", "a.png", "--faces", "a.csv"))
+        self.assertEqual(b"\x89PNG", (self.folder / "a.png").read_bytes()[:4])
+        lines = (self.folder / "a.csv").read_text().splitlines()
+        self.assertEqual("face,object,material,area,cx,cy,cz,irradiance.R,irradiance.G,irradiance.B"
+                         ",radiosity.R,radiosity.G,radiosity.B", lines[0])
+        self.assertEqual(1 + 2, len(lines))
+
+    def test_gives_the_same_bytes_for_every_machine(self):
+        pictures = set()
+        for machine in ((), ("--lanes", "1", "--pe", "32x32"), ("--lanes", "4", "--pe", "8x8"),
+                        ("--tile", "128x32"), ("--compute-units", "1")):
+            self.assert_done(self.solve(*machine))
+            pictures.add((self.folder / "scene.exr").read_bytes())
+        self.assertEqual(1, len(pictures))
+
+    def test_half_is_smaller(self):
+        self.assert_done(self.solve("-o", "float.exr"))
+        self.assert_done(self.solve("-o", "half.exr", "--half"))
+        self.assertLess((self.folder / "half.exr").stat().st_size,
+                        (self.folder / "float.exr").stat().st_size)
+
+    def test_stops_at_max_shots(self):
+        result = self.solve("--max-shots", "3", "--report", "r.json")
+        self.assert_done(result)
+        self.assertIn("stopped by --max-shots 3: 3 shots", result.stderr)
+        self.assertEqual(3, json.loads((self.folder / "r.json").read_text())["shots"])
+
+    def test_reads_kernels_from_a_folder(self):
+        kernels = pathlib.Path(__file__).resolve().parents[2] / "kernels"
+        self.assert_done(self.solve("-o", "a.exr"))
+        self.assert_done(self.solve("-o", "b.exr", "--kernels", str(kernels)))
+        self.assertEqual((self.folder / "a.exr").read_bytes(),
+                         (self.folder / "b.exr").read_bytes())
+
+    def test_kernel_that_does_not_compile_is_the_device_s_fault(self):
+        kernels = pathlib.Path(__file__).resolve().parents[2] / "kernels"
+        (self.folder / "kernels").mkdir()
+        for file in kernels.iterdir():
+            (self.folder / "kernels" / file.name).write_bytes(file.read_bytes())
+        with open(self.folder / "kernels/cull_patches.cl", "a", encoding="ascii") as kernel:
+            kernel.write("\noops;\n")
+        result = self.solve("--kernels", "kernels")
+        self.assertEqual(2, result.returncode, result.stderr)
+        self.assertIn("hemirad: ", result.stderr)
+        self.assertIn("kernels/cull_patches.cl:", result.stderr)
+        self.assertFalse((self.folder / "scene.exr").exists())
+
+
+class Report(CommandLine):
+    def test_holds_what_the_interface_promises(self):
+        self.assert_done(self.solve("--report", "r.json", "--preview", "p.png"))
+        report = json.loads((self.folder / "r.json").read_text())
+        for key, members in {
+                "scene": ("patches", "elements", "bands", "closed"),
+                "device": ("name", "compute_units", "pe", "lanes"),
+                "closure": ("min", "max"),
+                "seconds": ("total", "build_kernels", "solve", "lightmap", "per_shot_median",
+                            "per_stage"),
+        }.items():
+            for member in members:
+                self.assertIn(member, report[key])
+        self.assertEqual(["R", "G", "B"], list(report["ledger"]))
+        self.assertLess(report["ledger"]["R"]["residual"], 1e-5)
+        self.assertEqual({"min": 1, "max": 1}, report["closure"])
+        self.assertLess(report["unshot_fraction"], 1e-3)
+        self.assertGreater(report["peak_memory_bytes"], 1 << 20)
+        self.assertEqual(64, report["settings"]["resolution"])
+        self.assertEqual([], report["warnings"])
+        self.assertIn("project_patches", report["seconds"]["per_stage"])
+
+    def test_sums_up_the_files(self):
+        self.assert_done(self.solve("--report", "r.json", "--preview", "p.png"))
+        outputs = json.loads((self.folder / "r.json").read_text())["outputs"]
+        self.assertEqual(["scene.exr", "p.png"], [output["file"] for output in outputs])
+        for output in outputs:
+            bytes_written = (self.folder / output["file"]).read_bytes()
+            self.assertEqual(hashlib.sha256(bytes_written).hexdigest(), output["sha256"])
+
+
+class Interrupt(CommandLine):
+    def start(self, *arguments):
+        """A solve that takes far longer than the test, and has begun to shoot."""
+        process = subprocess.Popen(
+            [HEMIRAD, "solve", "scene.obj", "--resolution", "1024", "--patch-size", "0.02",
+             "--tolerance", "1e-9", "--snapshot-every", "1", "-o", "a.exr", *arguments],
+            cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not (self.folder / "a.exr").exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        return process
+
+    def test_snapshot_appears_while_the_solve_goes_on(self):
+        process = self.start()
+        self.assertTrue((self.folder / "a.exr").exists())
+        self.assertIsNone(process.poll())
+
+    def test_first_one_writes_the_picture_so_far(self):
+        process = self.start("--report", "r.json")
+        (self.folder / "a.exr").unlink()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(130, process.wait(60))
+        self.assertIn("interrupted", process.stderr.read())
+        self.assertEqual(b"\x76\x2f\x31\x01", (self.folder / "a.exr").read_bytes()[:4])
+        self.assertGreater(json.loads((self.folder / "r.json").read_text())["shots"], 0)
+
+
+class Environment(CommandLine):
+    def variables(self, **changes):
+        kept = {k: v for k, v in os.environ.items()
+                if k not in ("HOME", "XDG_CACHE_HOME", "POCL_CACHE_DIR")}
+        return kept | {"TMPDIR": str(self.folder)} | changes
+
+    def test_home_that_cannot_be_written(self):
+        self.assert_done(self.solve(environment=self.variables(HOME="/dev/null")))
+
+    def test_no_home(self):
+        self.assert_done(self.solve(environment=self.variables()))
+
+    def test_empty_home_variable(self):
+        self.assert_done(self.solve(environment=self.variables(HOME="")))
+
+    def test_home_in_use(self):
+        self.assert_done(self.solve(environment=self.variables(HOME=str(self.folder))))
+        self.assertTrue((self.folder / ".cache/pocl").is_dir())
+
+    def test_locale_with_decimal_commas(self):
+        self.assert_done(self.solve(environment=self.variables(LC_ALL="de_DE.UTF-8")))
+
+
+class Questions(CommandLine):
+    def test_help_goes_to_standard_output(self):
+        for command in ((), ("solve",), ("info",), ("devices",)):
+            result = self.run_hemirad(*command, "--help")
+            self.assert_done(result)
+            self.assertIn("Usage: hemirad", result.stdout)
+            self.assertEqual("", result.stderr)
+
+    def test_version(self):
+        self.assertRegex(self.run_hemirad("--version").stdout, r"^hemirad \d+\.\d+\.\d+\n$")
+
+    def test_info(self):
+        result = self.run_hemirad("info", "scene.obj", "--patch-size", "0.5")
+        self.assert_done(result)
+        for line in ("faces        2 ", "patches ", "parts        2", "floor: 1 face, open",
+                     "solved: 1", "memory "):
+            self.assertIn(line, result.stdout)
+
+    def test_info_counts_the_backs_that_the_option_asks_for(self):
+        blocked = self.run_hemirad("info", "scene.obj", "--backfaces", "block").stdout
+        culled = self.run_hemirad("info", "scene.obj", "--backfaces", "cull").stdout
+        self.assertIn("floor: 1 face, open, 1 back", blocked)
+        self.assertIn("floor: 1 face, open, no backs", culled)
+
+    def test_info_solves_three_bands_where_colours_differ(self):
+        self.write("scene.mtl", "newmtl white\nKd .1 .2 .3\nnewmtl lamp\nKe 1 1 1\n")
+        self.assertIn("solved: 3", self.run_hemirad("info", "scene.obj").stdout)
+
+    def test_devices(self):
+        result = self.run_hemirad("devices")
+        self.assert_done(result)
+        for word in ("0: ", "platform", "compute units", "max work-group", "local memory",
+                     "--pe ", "--lanes ", "--tile "):
+            self.assertIn(word, result.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv)
