@@ -32,8 +32,8 @@ std::string bytes_text(std::uint64_t bytes) {
 }
 
 std::string duration_text(double seconds) {
-    if (seconds < 1) return formatted("%.0f ms", seconds * 1e3);
-    if (seconds < 60) return formatted("%.1f s", seconds);
+    if (seconds < 0.9995) return formatted("%.0f ms", seconds * 1e3);
+    if (seconds < 59.95) return formatted("%.1f s", seconds);
     const auto whole = std::llround(seconds);
     if (whole < 3600) return formatted("%lld min %lld s", whole / 60, whole % 60);
     return formatted("%lld h %lld min", whole / 3600, whole % 3600 / 60);

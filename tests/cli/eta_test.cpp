@@ -1,0 +1,48 @@
+#include "cli/eta.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hemirad {
+namespace {
+
+TEST(Eta, IsUnknownWithoutDecay) {
+    Eta eta(1e-3);
+    EXPECT_FALSE(eta.remaining());
+
+    eta.note(0, 1);
+    eta.note(1, 1);
+
+    EXPECT_FALSE(eta.remaining());
+}
+
+TEST(Eta, IsExactForASteadyDecay) {
+    Eta eta(1e-3);
+
+    for (int second = 0; second <= 4; ++second) eta.note(second, std::pow(10.0, -second / 4.0));
+
+    EXPECT_NEAR(eta.remaining().value(), 8, 1e-9);
+}
+
+TEST(Eta, GoesByTheLaterHalf) {
+    Eta eta(1e-3);
+
+    eta.note(0, 1);
+    eta.note(2, 1e-2);  // bright emitters first
+    eta.note(4, 1e-2 * std::exp(-0.2));
+
+    EXPECT_NEAR(eta.remaining().value(), (std::log(10.0) - 0.2) / 0.1, 1e-9);
+}
+
+TEST(Eta, IsNothingBelowTheTolerance) {
+    Eta eta(1e-3);
+
+    eta.note(0, 1);
+    eta.note(1, 1e-4);
+
+    EXPECT_EQ(eta.remaining().value(), 0);
+}
+
+}  // namespace
+}  // namespace hemirad

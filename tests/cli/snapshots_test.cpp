@@ -1,0 +1,45 @@
+#include "cli/snapshots.h"
+
+#include <gtest/gtest.h>
+
+#include "cli/shot_clock.h"
+
+namespace hemirad {
+namespace {
+
+TEST(Snapshots, AreNeverDueUnlessAskedFor) {
+    EXPECT_FALSE(Snapshots({}).due({.shots = 1000, .seconds = 1000}));
+}
+
+TEST(Snapshots, AreDueOncePerIntervalOfShots) {
+    Snapshots snapshots({.shots = 10});
+
+    EXPECT_FALSE(snapshots.due({.shots = 9}));
+    EXPECT_TRUE(snapshots.due({.shots = 10}));
+    EXPECT_FALSE(snapshots.due({.shots = 19}));
+    EXPECT_TRUE(snapshots.due({.shots = 45}));  // three were missed: one picture does
+    EXPECT_FALSE(snapshots.due({.shots = 49}));
+}
+
+TEST(Snapshots, AreDueOncePerIntervalOfTime) {
+    Snapshots snapshots({.seconds = 2});
+
+    EXPECT_FALSE(snapshots.due({.seconds = 1.9}));
+    EXPECT_TRUE(snapshots.due({.seconds = 2.1}));
+    EXPECT_FALSE(snapshots.due({.seconds = 3.9}));
+    EXPECT_TRUE(snapshots.due({.seconds = 4.0}));
+}
+
+TEST(ShotClock, TakesTheMedianOfItsIntervals) {
+    ShotClock clock;
+    EXPECT_EQ(clock.median(), 0);
+
+    clock.note({.shots = 1, .seconds = 1});     // 1 s a shot
+    clock.note({.shots = 11, .seconds = 3});    // 0.2
+    clock.note({.shots = 21, .seconds = 103});  // 10: something else took the machine
+
+    EXPECT_DOUBLE_EQ(clock.median(), 1);
+}
+
+}  // namespace
+}  // namespace hemirad
