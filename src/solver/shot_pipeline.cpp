@@ -70,7 +70,8 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution) {
     std::uint64_t count = 0;
     for (std::int64_t b = 1 - n; b < n; b += 2) {
         // Odd or even as n is not: columns a with a^2 < n^2 - b^2.
-        std::int64_t half = static_cast<std::int64_t>(std::sqrt(static_cast<double>(n * n - b * b)));
+        std::int64_t half =
+            static_cast<std::int64_t>(std::sqrt(static_cast<double>(n * n - b * b)));
         while (half * half >= n * n - b * b) --half;
         while ((half + 1) * (half + 1) < n * n - b * b) ++half;
         if ((half - (n - 1)) % 2 != 0) --half;
@@ -84,8 +85,8 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner
                                      const mp1map::PeArray& array) {
     const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
     const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
-    const std::uint64_t slots =
-        stacks * stack_depth(static_cast<std::uint32_t>(stride), static_cast<std::uint32_t>(stacks));
+    const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
+                                                     static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
     const std::uint64_t geometry = stride * 4 * (3 * corner_count + 3);
     const std::uint64_t radiosity = stride * 4 * (4 * bands + 1);
@@ -157,50 +158,51 @@ mp1map::Grid ShotPipeline::tile_grid() const { return {tile_count_, array_.pe_co
 void ShotPipeline::init_plane() { acu_.issue(kernel("init_plane"), tile_grid(), roots_); }
 
 void ShotPipeline::aim_hemisphere(std::uint32_t part) {
-    acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, corners_, normals_, cl_int(stride_),
-               cl_int(samples_), cl_int(part));
+    acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, corners_, normals_, std::int32_t(stride_),
+               std::int32_t(samples_), std::int32_t(part));
 }
 
 void ShotPipeline::cull_patches() {
-    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, corners_, normals_, cl_int(stride_),
-               cl_int(depth_), stack_, stack_height_);
+    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, corners_, normals_,
+               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
 }
 
 void ShotPipeline::set_up_projection() {
     acu_.issue(kernel("set_up_projection"), stack_grid(), shot_, corners_, normals_,
-               cl_int(stride_), cl_int(depth_), stack_, stack_height_, projections_);
+               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, projections_);
 }
 
 void ShotPipeline::count_areas() {
     acu_.issue(kernel("count_areas"), stack_grid(), shot_, projections_, stack_height_,
-               cl_int(depth_), list_end_);
+               std::int32_t(depth_), list_end_);
 }
 
 void ShotPipeline::prefix_sum() {
-    acu_.issue(kernel("prefix_sum"), {1, kPrefixPes}, shot_, list_end_, cl_int(list_end_.size()),
-               cl_uint(lists_.size()));
+    acu_.issue(kernel("prefix_sum"), {1, kPrefixPes}, shot_, list_end_,
+               std::int32_t(list_end_.size()), std::uint32_t(lists_.size()));
 }
 
 void ShotPipeline::bin_areas() {
     acu_.issue(kernel("bin_areas"), stack_grid(), shot_, projections_, stack_height_,
-               cl_int(depth_), list_end_, lists_);
+               std::int32_t(depth_), list_end_, lists_);
 }
 
 void ShotPipeline::project_patches() {
     acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, list_end_,
-               lists_, cl_int(stack_count_), cl_int(escaped_owner()), proxel_count_, owners_);
+               lists_, std::int32_t(stack_count_), std::int32_t(escaped_owner()), proxel_count_,
+               owners_);
 }
 
 void ShotPipeline::update_radiosity() {
     acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               per_proxel_, cl_int(stride_), received_, received_rest_, unshot_, reflectance_,
+               per_proxel_, std::int32_t(stride_), received_, received_rest_, unshot_, reflectance_,
                band_weight_, summaries_, block_unshot_);
 }
 
 void ShotPipeline::choose_shooter() {
     acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
-               cl_int(summaries_.size()), unshot_, cl_int(stride_), band_weight_, tolerance_,
-               per_proxel_, proxel_count_, escaped_, shot_flux_);
+               std::int32_t(summaries_.size()), unshot_, std::int32_t(stride_), band_weight_,
+               tolerance_, per_proxel_, proxel_count_, escaped_, shot_flux_);
 }
 
 device::Shot ShotPipeline::shot() { return acu_.unload(shot_).front(); }
@@ -248,8 +250,8 @@ std::vector<std::int32_t> ShotPipeline::owners() {
                 row / array_.tile_height * tile_columns + column / array_.tile_width;
             const std::uint32_t layer =
                 y / array_.area_height() * area_columns + x / array_.area_width();
-            const std::uint32_t pe = y % array_.area_height() * array_.width +
-                                     x % array_.area_width() / array_.lanes;
+            const std::uint32_t pe =
+                y % array_.area_height() * array_.width + x % array_.area_width() / array_.lanes;
             const std::size_t in_tile =
                 (std::size_t{layer} * array_.pe_count() + pe) * array_.lanes + x % array_.lanes;
             owners[std::size_t{row} * resolution_ + column] =
