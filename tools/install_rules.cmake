@@ -20,9 +20,16 @@ install(TARGETS hemirad_library hemirad_solver hemirad_lightmap hemirad_scene mp
     EXPORT hemirad-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT hemirad-targets NAMESPACE hemirad:: DESTINATION ${package})
 
-install(FILES src/errors.h DESTINATION ${headers})
-foreach(folder scene solver lightmap)
-    install(DIRECTORY src/${folder} DESTINATION ${headers} FILES_MATCHING PATTERN *.h)
+# What read_scene, build_mesh, ProgressiveSolver and the writers of lightmaps need, not their insides.
+set(public_headers
+    errors.h
+    scene/mesh.h scene/read_scene.h scene/scene.h
+    solver/bands.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h solver/solver.h
+    lightmap/atomic_file.h lightmap/chart_layout.h lightmap/lightmap.h lightmap/rasterize.h
+    lightmap/write_exr.h lightmap/write_faces.h lightmap/write_preview.h)
+foreach(header IN LISTS public_headers)
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES src/${header} DESTINATION ${headers}/${folder})
 endforeach()
 install(DIRECTORY mp1map DESTINATION ${headers} FILES_MATCHING PATTERN *.h)
 install(FILES kernels/shared.h DESTINATION ${headers}/kernels)
