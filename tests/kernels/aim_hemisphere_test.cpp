@@ -1,0 +1,170 @@
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "support/kernel_run.h"
+#include "support/patch_database.h"
+
+namespace hemirad::test {
+namespace {
+
+using glm::dvec3;
+
+// Coordinates are below 1 in magnitude; a sample is an average of averages of them, less than 16
+// roundings of half an ulp away from the exact one.
+constexpr double kBound = 16 * 0x1p-24;
+
+struct Frame {
+    dvec3 origin, u_axis, v_axis, normal;
+};
+
+dvec3 vector_of(const float* v) { return {v[0], v[1], v[2]}; }
+
+class AimHemisphere {
+  public:
+    explicit AimHemisphere(const PatchArrays& arrays)
+        : arrays_(arrays), run_("aim_hemisphere", options(arrays)) {}
+
+    Frame operator()(int patch, int samples, int part) {
+        device::Shot shot{};
+        shot.patch = patch;
+        shot.status = kRunning;
+        shot = aimed(shot, samples, part);
+        return {vector_of(shot.origin), vector_of(shot.u_axis), vector_of(shot.v_axis),
+                vector_of(shot.normal)};
+    }
+    device::Shot aimed(const device::Shot& shot, int samples, int part) {
+        auto plural = run_.plural(std::vector{shot});
+        run_.issue({1, 1}, plural, run_.plural(arrays_.corners), run_.plural(arrays_.normals),
+                   std::int32_t(arrays_.stride), std::int32_t(samples), std::int32_t(part));
+        return run_.acu().unload(plural).front();
+    }
+
+  private:
+    static KernelOptions options(const PatchArrays& arrays) {
+        KernelOptions result;
+        result.corners = arrays.corner_count;
+        return result;
+    }
+
+    PatchArrays arrays_;
+    KernelRun run_;
+};
+
+dvec3 corner(const PatchArrays& arrays, int patch, int k) {
+    const auto c = corner_of(arrays, patch, std::min<std::size_t>(k, arrays.corner_count - 1));
+    return {c.x, c.y, c.z};
+}
+
+struct Part {
+    double area;
+    dvec3 centroid;
+};
+
+Part triangle_part(dvec3 a, dvec3 b, dvec3 c) {
+    return {glm::length(glm::cross(b - a, c - a)) / 2, (a + b + c) / 3.0};
+}
+
+// The part [i, i+1] x [j, j+1] / samples of a quad, as the two triangles it is made of.
+Part quad_part(const PatchArrays& arrays, int patch, int samples, int part) {
+    const auto point = [&](int i, int j) {
+        const double s = double(i) / samples, t = double(j) / samples;
+        return (1 - t) * ((1 - s) * corner(arrays, patch, 0) + s * corner(arrays, patch, 1)) +
+               t * ((1 - s) * corner(arrays, patch, 3) + s * corner(arrays, patch, 2));
+    };
+    const int i = part % samples, j = part / samples;
+    const auto low = triangle_part(point(i, j), point(i + 1, j), point(i + 1, j + 1));
+    const auto high = triangle_part(point(i, j), point(i + 1, j + 1), point(i, j + 1));
+    const double area = low.area + high.area;
+    return {area, (low.area * low.centroid + high.area * high.centroid) / area};
+}
+
+// Centroids of the congruent triangles of a triangle cut into samples rows from corner a.
+std::vector<dvec3> triangle_centroids(const PatchArrays& arrays, int patch, int samples) {
+    const dvec3 a = corner(arrays, patch, 0), b = corner(arrays, patch, 1),
+                c = corner(arrays, patch, 2);
+    const auto point = [&](int down, int across) {
+        return a + ((b - a) * double(down - across) + (c - a) * double(across)) / double(samples);
+    };
+    std::vector<dvec3> centroids;
+    for (int row = 0; row < samples; ++row)
+        for (int i = 0; i <= row; ++i) {
+            if (i > 0)
+                centroids.push_back(
+                    triangle_part(point(row, i - 1), point(row + 1, i), point(row, i)).centroid);
+            centroids.push_back(
+                triangle_part(point(row, i), point(row + 1, i), point(row + 1, i + 1)).centroid);
+        }
+    return centroids;
+}
+
+bool repeats_corner(const PatchArrays& arrays, int patch) {
+    return corner(arrays, patch, 3) == corner(arrays, patch, 2);
+}
+
+TEST(AimHemisphere, OriginIsTheCentroidOfThatPartOfAQuad) {
+    const auto arrays = random_patches(20, 4, 3);
+    AimHemisphere aim(arrays);
+
+    for (const int samples : {1, 2, 5})
+        for (int patch = 0; patch < 20; ++patch)
+            for (int part = 0; part < samples * samples; ++part) {
+                if (repeats_corner(arrays, patch)) continue;
+                const auto expected = quad_part(arrays, patch, samples, part);
+                const auto origin = aim(patch, samples, part).origin;
+                // A part's own area decides how well the share of its two triangles is known.
+                const double bound = kBound * std::max(1.0, 1e-3 / expected.area);
+                ASSERT_LT(glm::distance(origin, expected.centroid), bound)
+                    << "patch " << patch << " part " << part << " of " << samples;
+            }
+}
+
+TEST(AimHemisphere, OriginIsTheCentroidOfThatPartOfATriangleOfThreeOrFourCorners) {
+    for (const int corners : {3, 4}) {
+        const auto arrays = random_patches(10, corners, 4);
+        AimHemisphere aim(arrays);
+
+        for (const int samples : {1, 2, 4})
+            for (int patch = 0; patch < 10; ++patch) {
+                if (!repeats_corner(arrays, patch)) continue;
+                const auto centroids = triangle_centroids(arrays, patch, samples);
+                for (int part = 0; part < samples * samples; ++part)
+                    ASSERT_LT(glm::distance(aim(patch, samples, part).origin, centroids[part]),
+                              kBound)
+                        << "patch " << patch << " part " << part << " of " << samples;
+            }
+    }
+}
+
+TEST(AimHemisphere, TheFrameIsRightHandedAndItsUAxisRunsAlongTheFirstEdge) {
+    const auto arrays = random_patches(50, 4, 5);
+    AimHemisphere aim(arrays);
+
+    for (int patch = 0; patch < 50; ++patch) {
+        const auto frame = aim(patch, 1, 0);
+
+        const auto edge = corner(arrays, patch, 1) - corner(arrays, patch, 0);
+        const auto normal = normal_of(arrays, patch);
+        EXPECT_EQ(frame.normal, dvec3(normal.x, normal.y, normal.z));
+        EXPECT_NEAR(glm::dot(frame.u_axis, frame.normal), 0, 4 * 0x1p-24);
+        EXPECT_LT(glm::distance(glm::cross(frame.normal, frame.u_axis), frame.v_axis), 4 * 0x1p-24);
+        EXPECT_NEAR(glm::length(frame.u_axis), 1, 4 * 0x1p-24);
+        // Corners are rounded to half an ulp of 1; a short edge turns by as much more.
+        EXPECT_GT(glm::dot(frame.u_axis, glm::normalize(edge)), 1 - 1e-6);
+    }
+}
+
+TEST(AimHemisphere, AHaltedShotKeepsItsFrame) {
+    const auto arrays = random_patches(1, 4, 6);
+    device::Shot halted{};
+    halted.status = kBinsFull;
+    halted.origin[0] = 7;
+
+    const auto shot = AimHemisphere(arrays).aimed(halted, 1, 0);
+
+    EXPECT_EQ(shot.origin[0], 7.0f);
+    EXPECT_EQ(shot.normal[2], 0.0f);
+}
+
+}  // namespace
+}  // namespace hemirad::test

@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "kernels/shared.h"
+#include "support/kernel_run.h"
+
+namespace hemirad::test {
+namespace {
+
+constexpr float kPerProxel = 1.0f / 1000;
+
+// What choose_shooter reads: a shot that found its patches, in blocks.
+struct Books {
+    std::size_t bands = 1;
+    device::Shot shot{};
+    std::vector<device::BlockSummary> summaries;
+    std::vector<float> block_unshot;  // [block][band]
+    std::vector<float> unshot;        // [band][patch]
+    std::vector<float> weight, flux;  // [band]
+    std::vector<float> escaped;       // [sum, rest][band]
+    std::int32_t escaped_count = 0;
+    float tolerance = 1e-3f;
+
+    std::size_t stride() const { return summaries.size() * kReduceBlock; }
+};
+
+// `blocks` of which each has 10 proxels and its most energetic patch in the middle.
+Books random_books(std::size_t blocks, std::size_t bands) {
+    std::mt19937 random(70);
+    std::uniform_real_distribution<float> unit(0, 1);
+    Books books;
+    books.bands = bands;
+    books.shot.status = kRunning;
+    books.shot.patch = 3;
+    books.shot.shots = 41;
+    books.shot.least_proxels = std::numeric_limits<std::uint32_t>::max();
+    for (std::size_t block = 0; block < blocks; ++block) {
+        books.summaries.push_back(
+            {unit(random), static_cast<std::int32_t>(block * kReduceBlock + 32), 10});
+        for (std::size_t band = 0; band < bands; ++band) books.block_unshot.push_back(unit(random));
+    }
+    for (std::size_t i = 0; i < bands * books.stride(); ++i) books.unshot.push_back(unit(random));
+    for (std::size_t band = 0; band < bands; ++band) {
+        books.weight.push_back(unit(random));
+        books.flux.push_back(unit(random));
+    }
+    books.escaped.assign(2 * bands, 0.0f);
+    return books;
+}
+
+// One array of as many PEs as the parameter says.
+class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
+  protected:
+    /// The books after the kernel. Counts of patches do not matter to it.
+    Books closed(const Books& books) {
+        KernelOptions options;
+        options.bands = static_cast<std::uint32_t>(books.bands);
+        options.reduce_pes = GetParam();
+        KernelRun run("choose_shooter", options);
+        auto shot = run.plural(std::vector{books.shot});
+        std::vector<std::int32_t> counts(books.stride() + 2, 0);
+        counts[books.stride()] = books.escaped_count;
+        counts[books.stride() + 1] = 5;  // outside the disk
+        auto proxel_count = run.plural(counts);
+        auto escaped = run.plural(books.escaped), flux = run.plural(books.flux);
+        run.issue({1, GetParam()}, shot, run.plural(books.summaries),
+                  run.plural(books.block_unshot), std::int32_t(books.summaries.size()),
+                  run.plural(books.unshot), std::int32_t(books.stride()), run.plural(books.weight),
+                  books.tolerance, kPerProxel, proxel_count, escaped, flux);
+        Books result = books;
+        result.shot = run.acu().unload(shot).front();
+        result.escaped = run.acu().unload(escaped);
+        result.flux = run.acu().unload(flux);
+        counts_ = run.acu().unload(proxel_count);
+        return result;
+    }
+
+    std::vector<std::int32_t> counts_;
+};
+
+// Unshot flux of a band, added up by one array: each PE its blocks, then PE after PE.
+float added_unshot(const Books& books, std::size_t band, std::size_t pes) {
+    std::vector<float> left(pes, 0.0f);
+    for (std::size_t block = 0; block < books.summaries.size(); ++block)
+        left[block % pes] += books.block_unshot[block * books.bands + band];
+    float total = left[0];
+    for (std::size_t pe = 1; pe < pes; ++pe) total += left[pe];
+    return total;
+}
+
+INSTANTIATE_TEST_SUITE_P(Pes, ChooseShooter, testing::Values(1u, 3u, 64u));
+
+TEST_P(ChooseShooter, TheMostEnergeticPatchOfAllBlocksShootsNextWithItsUnshotFlux) {
+    for (const std::size_t blocks : {1u, 2u, 64u, 200u}) {
+        const auto books = random_books(blocks, 3);
+        const auto most =
+            std::max_element(books.summaries.begin(), books.summaries.end(),
+                             [](const auto& a, const auto& b) { return a.energy < b.energy; });
+
+        const auto after = closed(books);
+
+        EXPECT_EQ(after.shot.patch, most->patch);
+        for (std::size_t band = 0; band < 3; ++band)
+            EXPECT_EQ(after.flux[band], books.unshot[band * books.stride() + most->patch]);
+        EXPECT_EQ(after.shot.status, kRunning);
+    }
+}
+
+TEST_P(ChooseShooter, TiesGoToTheLowestPatch) {
+    auto books = random_books(200, 1);
+    for (const std::size_t block : {17u, 80u, 81u, 199u}) books.summaries[block].energy = 2;
+
+    EXPECT_EQ(closed(books).shot.patch, 17 * kReduceBlock + 32);
+}
+
+TEST_P(ChooseShooter, TheUnshotFractionIsThatOfTheBandWithTheLargest) {
+    const auto books = random_books(200, 3);
+
+    const auto after = closed(books);
+
+    float expected = 0;
+    for (std::size_t band = 0; band < 3; ++band)
+        expected = std::max(expected, added_unshot(books, band, GetParam()) * books.weight[band]);
+    EXPECT_EQ(after.shot.unshot_fraction, expected);
+}
+
+TEST_P(ChooseShooter, TheBooksOfTheShotAreClosed) {
+    auto books = random_books(30, 2);
+    books.escaped = {0.5f, 0.25f, 0, 0};
+    books.escaped_count = 40;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.shots, 42u);
+    EXPECT_EQ(after.shot.escaped_proxels, 40u);
+    EXPECT_EQ(after.shot.least_proxels, 340u);
+    EXPECT_EQ(after.shot.most_proxels, 340u);
+    for (std::size_t band = 0; band < 2; ++band) {
+        // Two-sum is exact: sum and rest together are the sum in double precision.
+        const float flux = books.flux[band] * (40 * kPerProxel);
+        EXPECT_EQ(double{after.escaped[band]} + after.escaped[2 + band],
+                  double{books.escaped[band]} + flux);
+    }
+    EXPECT_EQ(counts_[books.stride()], 0);
+    EXPECT_EQ(counts_[books.stride() + 1], 0);
+}
+
+TEST_P(ChooseShooter, BeforeTheFirstShotThereAreNoBooksToClose) {
+    auto books = random_books(30, 1);
+    books.shot.patch = -1;
+    books.shot.shots = 0;
+    books.escaped_count = 40;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.shots, 0u);
+    EXPECT_EQ(after.shot.most_proxels, 0u);
+    EXPECT_EQ(after.escaped[0], 0.0f);
+    EXPECT_GE(after.shot.patch, 0);
+}
+
+TEST_P(ChooseShooter, ItConvergesBelowTheToleranceAndNotAtIt) {
+    auto books = random_books(1, 1);
+    books.weight = {1};
+    books.block_unshot = {0.125f};
+
+    books.tolerance = 0.125f;
+    EXPECT_EQ(closed(books).shot.status, kRunning);
+    books.tolerance = 0.1251f;
+    EXPECT_EQ(closed(books).shot.status, kConverged);
+}
+
+TEST_P(ChooseShooter, WithoutEnergyNothingIsLeftToShoot) {
+    auto books = random_books(3, 1);
+    for (auto& summary : books.summaries) summary.energy = 0;
+    books.tolerance = 0;
+
+    EXPECT_EQ(closed(books).shot.status, kExhausted);
+}
+
+TEST_P(ChooseShooter, AHaltedShotKeepsItsShooterAndItsBooks) {
+    auto books = random_books(30, 1);
+    books.shot.status = kBinsFull;
+    books.escaped_count = 40;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.patch, 3);
+    EXPECT_EQ(after.shot.shots, 41u);
+    EXPECT_EQ(after.flux, books.flux);
+    EXPECT_EQ(counts_[books.stride()], 40);
+}
+
+}  // namespace
+}  // namespace hemirad::test

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include "support/kernel_run.h"
+#include "support/patch_database.h"
+
+namespace hemirad::test {
+namespace {
+
+// Sec. 1.5.1: faces the shooter, and is not entirely behind it.
+bool potentially_visible(const device::Shot& shot, const PatchArrays& arrays, std::size_t patch) {
+    const auto first = relative_to(shot, corner_of(arrays, patch, 0));
+    if (!(scalar_dot(normal_of(arrays, patch), first) < -kPlaneMargin)) return false;
+    for (std::size_t k = 0; k < arrays.corner_count; ++k)
+        if (scalar_dot(shot.normal, relative_to(shot, corner_of(arrays, patch, k))) > kPlaneMargin)
+            return true;
+    return false;
+}
+
+using StackContents = std::vector<std::vector<std::int32_t>>;
+
+StackContents expected_stacks(const device::Shot& shot, const PatchArrays& arrays,
+                              const Stacks& stacks) {
+    StackContents contents(stacks.count());
+    for (std::size_t patch = 0; patch < arrays.patch_count; ++patch)
+        if (potentially_visible(shot, arrays, patch))
+            contents[patch / stacks.depth].push_back(static_cast<std::int32_t>(patch));
+    return contents;
+}
+
+StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
+                           const Shape& shape) {
+    const Stacks stacks(shape, arrays.stride);
+    KernelOptions options;
+    options.lanes = shape.lanes;
+    options.corners = arrays.corner_count;
+    KernelRun run("cull_patches", options);
+    auto stack = run.plural(std::vector<std::int32_t>(stacks.slots(), -1));
+    auto heights = run.plural(std::vector<std::int32_t>(stacks.count(), -1));
+    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(arrays.corners),
+              run.plural(arrays.normals), std::int32_t(arrays.stride), std::int32_t(stacks.depth),
+              stack, heights);
+
+    const auto slots = run.acu().unload(stack), height = run.acu().unload(heights);
+    StackContents contents(stacks.count());
+    for (std::size_t pe = 0; pe < stacks.count(); ++pe)
+        for (int level = 0; level < height[pe]; ++level)
+            contents[pe].push_back(slots[pe * stacks.depth + level]);
+    return contents;
+}
+
+class CullPatches : public testing::TestWithParam<Shape> {};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CullPatches, testing::ValuesIn(shapes()),
+                         [](const auto& shape) { return name_of(shape.param); });
+
+TEST_P(CullPatches, VisiblePatchesLieOnTopOfTheStackInTheirOrder) {
+    const auto shot = shot_from({0.1, -0.2, 0.05}, {0.3, 0.4, 0.8});
+    for (const int corners : {3, 4}) {
+        const auto arrays = random_patches(1000, corners, 10);
+
+        const auto stacks = stacks_after(shot, arrays, GetParam());
+
+        EXPECT_EQ(stacks, expected_stacks(shot, arrays, Stacks(GetParam(), arrays.stride)));
+    }
+}
+
+TEST_P(CullPatches, OnlyWhatFacesTheShooterFromInFrontOfItIsKept) {
+    const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+    const auto arrays = patch_arrays(mesh_of({
+        square({0, 0, 0}, x, y, 1),     // the shooter's own plane
+        square({0, 0, 1}, y, x, 1),     // above, faces down
+        square({0, 0, 1}, x, y, 1),     // above, faces up
+        square({0, 0, -1}, x, y, 1),    // below, faces up
+        square({0.7, 0, 0}, z, y, 1),   // beside, half above, faces away
+        square({0.7, 0, 0}, y, z, 1),   // beside, half above, faces back, outwards from x
+        square({-0.7, 0, 0}, y, z, 1),  // on the other side, half above, faces the shooter
+        square({3, 0, 0}, y, x, 1),     // in the shooter's plane, upside down
+    }));
+    const auto shot = shot_from((glm::dvec3(0) - arrays.centre) * arrays.scale, z);
+
+    const auto stacks = stacks_after(shot, arrays, GetParam());
+
+    std::vector<std::int32_t> kept;
+    for (const auto& stack : stacks) kept.insert(kept.end(), stack.begin(), stack.end());
+    EXPECT_EQ(kept, (std::vector<std::int32_t>{1, 4, 6}));
+}
+
+TEST_P(CullPatches, AHaltedShotLeavesTheStacksAlone) {
+    const auto arrays = random_patches(100, 4, 11);
+    auto shot = shot_from({0, 0, 0}, {0, 0, 1});
+    shot.status = kConverged;
+
+    const auto stacks = stacks_after(shot, arrays, GetParam());
+
+    EXPECT_EQ(stacks, StackContents(stacks.size()));
+}
+
+}  // namespace
+}  // namespace hemirad::test
