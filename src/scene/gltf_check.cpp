@@ -156,6 +156,21 @@ void check_uris(const InputFile& file, const Json& json) {
     }
 }
 
+/// tinygltf would quote the whole URI.
+void check_data_uris(const InputFile& file, const Json& json) {
+    constexpr std::string_view kMarker = ";base64,";
+    for_each(json, "buffers/*", [&](const std::string& path, const Json& buffer) {
+        const std::string uri = buffer.value("uri", "");
+        const auto marker = uri.find(kMarker);
+        if (!uri.starts_with("data:") || marker == std::string::npos) return;
+        const auto digits = std::string_view(uri).substr(marker + kMarker.size());
+        const auto count = std::min(digits.find('='), digits.size());
+        const auto size = buffer.value("byteLength", std::size_t{0});
+        if (count * 3 / 4 == size) return;
+        fail(file, path, "its data URI does not hold " + std::to_string(size) + " bytes");
+    });
+}
+
 void check_buffer_views(const InputFile& file, const Json& json) {
     for_each(json, "bufferViews/*", [&](const std::string& path, const Json& view) {
         if (!view.contains("buffer") || !view.contains("byteLength")) {
@@ -226,6 +241,7 @@ void check_gltf(const InputFile& file, const Json& json) {
     check_references(file, json);
     check_numbers(file, json);
     check_uris(file, json);
+    check_data_uris(file, json);
     check_buffer_views(file, json);
 }
 

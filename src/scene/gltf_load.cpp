@@ -56,9 +56,13 @@ void check_nesting(const InputFile& file, std::string_view text) {
     }
 }
 
+// tinygltf quotes whole data URIs.
+constexpr std::size_t kLongestMessage = 200;
+
 /// nlohmann and tinygltf write several lines and prefixes; ours are one line.
 std::string one_line(const std::string& message) {
     std::string line = message.substr(0, message.find_first_of("\r\n"));
+    if (line.size() > kLongestMessage) line = line.substr(0, kLongestMessage) + "...";
     const auto prefix = line.starts_with("[json") ? line.find("] ") : std::string::npos;
     if (prefix != std::string::npos) line.erase(0, prefix + 2);
     return printable(line);

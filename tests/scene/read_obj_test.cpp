@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/read_scene.h"
-#include "scene_folder.h"
+#include "scene/scene_folder.h"
 
 namespace hemirad::test {
 namespace {
