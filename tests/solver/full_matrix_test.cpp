@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include "solver/support.h"
+
+// Progressive refinement and the full matrix (sec. 1.2) solve the same equation.
+namespace hemirad::test {
+namespace {
+
+constexpr std::uint32_t kResolution = 256;
+
+void expect_full_matrix_solution(const Mesh& mesh, std::uint32_t samples, const char* name) {
+    ASSERT_LE(mesh.patches.size(), 500u);
+    const auto matrix = Shooters(mesh, kResolution, samples).form_factor_matrix();
+
+    auto how = settings(kResolution, 1e-6);
+    how.shooter_samples = samples;
+    const auto solution = solution_of(mesh, how);
+
+    double largest = 0;
+    for (std::size_t band = 0; band < mesh.bands.size(); ++band) {
+        const auto full = full_matrix_solution(mesh, matrix, band);
+        ASSERT_TRUE(full.converged);
+        largest = std::max(largest, largest_difference(solution.radiosity[band], full.radiosity));
+        largest = std::max(largest, largest_difference(solution.irradiance[band], full.irradiance));
+        const auto& ledger = solution.ledger[band];
+        EXPECT_NEAR(ledger.absorbed / full.balance.absorbed, 1, 2e-6);
+        EXPECT_NEAR(ledger.escaped / ledger.emitted, full.balance.escaped / full.balance.emitted,
+                    2e-6);
+    }
+    EXPECT_LT(largest, 2e-5);
+    testing::Test::RecordProperty(name, std::to_string(largest));
+    std::printf("%s: %zu patches, largest relative difference %.2g\n", name, mesh.patches.size(),
+                largest);
+}
+
+TEST(FullMatrix, AgreesInAClosedFurnishedRoom) {
+    expect_full_matrix_solution(meshed(furnished_room(), 0.75), 1, "room");
+}
+
+TEST(FullMatrix, AgreesInTheOpenCornellBox) {
+    expect_full_matrix_solution(meshed(scene_named("cornell.gltf"), 0.11), 1, "cornell");
+}
+
+TEST(FullMatrix, AgreesWithSeveralHemispheresAShooter) {
+    expect_full_matrix_solution(meshed(scene_named("cornell.gltf"), 0.2), 3, "cornell, 3 x 3");
+}
+
+TEST(FullMatrix, OfTheScalarReferenceGivesTheSameRadiosity) {
+    constexpr std::uint32_t kCoarse = 64;
+    const Mesh mesh = meshed(furnished_room(), 1.3);
+    Shooters shooters(mesh, kCoarse);
+    std::vector<Polygon> polygons;
+    std::vector<std::vector<reference::Shooter>> frames;
+    for (std::uint32_t i = 0; i < shooters.patch_count(); ++i) {
+        Polygon polygon;
+        for (int k = 0; k < 4; ++k) polygon.corners[k] = mesh.vertices[mesh.patches[i].corners[k]];
+        polygons.push_back(polygon);
+        frames.push_back({shooters.frame(i, 0)});
+    }
+    polygons = normalised(polygons, shooters.arrays());
+
+    const auto scalar = reference::form_factor_matrix(polygons, frames, kCoarse);
+    const auto solution = solution_of(mesh, settings(kCoarse, 1e-6));
+
+    // Proxels on an edge may fall to either side; each is 1 / 3,228 of a shooter's flux.
+    double largest = 0;
+    for (std::size_t band = 0; band < mesh.bands.size(); ++band)
+        largest = std::max(largest,
+                           largest_difference(solution.radiosity[band],
+                                              full_matrix_solution(mesh, scalar, band).radiosity));
+    std::printf("scalar reference: %zu patches, largest relative difference %.2g\n",
+                mesh.patches.size(), largest);
+    EXPECT_LT(largest, 1e-2);
+}
+
+}  // namespace
+}  // namespace hemirad::test

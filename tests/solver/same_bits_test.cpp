@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "lightmap/rasterize.h"
+#include "lightmap/write_exr.h"
+#include "solver/support.h"
+
+// The lightmap is the same to the last bit whatever the PE array, its lanes, its tiles and the
+// device's compute units.
+namespace hemirad::test {
+namespace {
+
+struct Machine {
+    const char* name;
+    mp1map::PeArrayRequest pe_array;
+    std::uint32_t compute_units = 0;
+};
+
+std::vector<Machine> machines() {
+    return {{"default", {}},
+            {"lanes 1", {0, 0, 1, 0, 0}},
+            {"lanes 4", {0, 0, 4, 0, 0}},
+            {"lanes 8", {0, 0, 8, 0, 0}},
+            {"lanes 16", {0, 0, 16, 0, 0}},
+            {"8x8", {8, 8, 1, 0, 0}},
+            {"16x16", {16, 16, 1, 0, 0}},
+            {"32x32", {32, 32, 1, 0, 0}},
+            {"64x64", {64, 64, 1, 0, 0}},
+            {"1 compute unit", {}, 1},
+            {"2 compute units", {}, 2},
+            {"again", {}}};
+}
+
+std::string exr_of(const Mesh& mesh, SolverSettings how, const Machine& machine) {
+    how.pe_array = machine.pe_array;
+    const auto device = mp1map::Device::open("", machine.compute_units);
+    ProgressiveSolver solver(mesh, how, device);
+    solver.solve(go_on);
+    const Solution solution = solver.solution();
+    const auto path = std::filesystem::path(testing::TempDir()) /
+                      ("hemirad-same-bits-" + std::to_string(getpid()) + ".exr");
+    write_exr(path, rasterize(mesh, solution, lay_out_charts(mesh), Quantity::irradiance),
+              describe(solution, Quantity::irradiance));
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+void expect_same_bytes_on_all_machines(const Mesh& mesh, const SolverSettings& how) {
+    std::string first;
+    for (const auto& machine : machines()) {
+        const auto bytes = exr_of(mesh, how, machine);
+        ASSERT_FALSE(bytes.empty());
+        if (first.empty()) first = bytes;
+        EXPECT_TRUE(bytes == first) << machine.name;
+    }
+}
+
+TEST(SameBits, OfTheCornellBoxOnEveryMachine) {
+    expect_same_bytes_on_all_machines(meshed(scene_named("cornell.gltf"), 0.06),
+                                      settings(150, 1e-3, 150));
+}
+
+TEST(SameBits, OfTheSmallHallOnEveryMachine) {
+    auto how = settings(150, 1e-3, 40);
+    how.shooter_samples = 2;
+    expect_same_bytes_on_all_machines(meshed(scene_named("hall2k.obj"), 0), how);
+}
+
+TEST(SameBits, WhateverTheIntervalsOfTheHost) {
+    const Mesh mesh = meshed(furnished_room(), 0.75);
+    const auto how = settings(128, 1e-2);
+    const Solution whole = solution_of(mesh, how);
+    const auto device = mp1map::Device::open("");
+
+    for (const std::uint64_t every : {1u, 3u, 50u}) {
+        SolverSettings in_steps = how;
+        in_steps.stop_every = every;
+        ProgressiveSolver solver(mesh, in_steps, device);
+        while (solver.solve([](const Progress&) { return false; }) == Stop::interrupted) {
+        }
+        EXPECT_EQ(solver.solution().irradiance, whole.irradiance) << "every " << every;
+        EXPECT_EQ(solver.solution().shots, whole.shots);
+    }
+}
+
+TEST(SameBits, WhateverThePowerOfTwoTheSceneIsScaledBy) {
+    std::mt19937 random(6);
+    const Scene scene = rotated(furnished_room(), random_rotation(random));
+    const auto how = settings(128, 1e-2);
+    const Solution whole = solution_of(meshed(scene, 0.75), how);
+
+    for (const double factor : {0x1p-20, 0.5, 2.0, 0x1p20}) {
+        const Solution other = solution_of(meshed(scaled(scene, factor), 0.75 * factor), how);
+        EXPECT_EQ(other.irradiance, whole.irradiance) << factor;
+        EXPECT_EQ(other.shots, whole.shots);
+    }
+}
+
+// Half of the extent is a rounding error above a power of two.
+TEST(SameBits, OfNormalisedCoordinatesWhateverThePowerOfTwo) {
+    const double edge = 2 * std::nextafter(1.0, 2.0);
+    Mesh mesh = mesh_of(std::vector<Polygon>{{{glm::dvec3(0), {edge, 0, 0}, {edge, 1, 0}, {0, 1, 0}}}});
+    const auto arrays = patch_arrays(mesh);
+    for (auto& vertex : mesh.vertices) vertex *= 1024.0;
+
+    const auto scaled_arrays = patch_arrays(mesh);
+
+    EXPECT_EQ(scaled_arrays.corners, arrays.corners);
+    EXPECT_EQ(scaled_arrays.scale * 1024, arrays.scale);
+    EXPECT_LE(*std::max_element(arrays.corners.begin(), arrays.corners.end()), 1.0f);
+}
+
+}  // namespace
+}  // namespace hemirad::test
