@@ -73,12 +73,13 @@ TEST_F(ReadObj, NamesFacesAfterTheirObjectOrGroup) {
                                                  "g top left\nf 1 2 3\n"
                                                  "g legs\nf 1 2 3\n"
                                                  "g top left\nf 1 2 3\n"
-                                                 "o chair\ng legs\nf 1 2 3\n");
+                                                 "o chair\ng legs\nf 1 2 3\n"
+                                                 "o lamp\nf 1 2 3\n");
 
-    EXPECT_THAT(scene.objects, ElementsAre("default", "table", "top left", "legs", "legs"));
+    EXPECT_THAT(scene.objects, ElementsAre("default", "table", "top left", "legs", "legs", "lamp"));
     std::vector<std::uint32_t> objects;
     for (const auto& face : scene.faces) objects.push_back(face.object);
-    EXPECT_THAT(objects, ElementsAre(0, 1, 2, 3, 2, 4));
+    EXPECT_THAT(objects, ElementsAre(0, 1, 2, 3, 2, 4, 5));
 }
 
 TEST_F(ReadObj, TakesKdAsReflectanceAndKeAsRadiance) {
