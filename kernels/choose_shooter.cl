@@ -28,60 +28,62 @@ static void close_books(__global Shot* shot, const __global float* shot_flux, ui
     escaped_count[1] = 0;
 }
 
+// The more energetic of two, the lower patch of equals. Adds the rest up.
+static void merge(__local BlockSummary* into, __local float* left, BlockSummary other,
+                  const __local float* other_left) {
+    if (other.energy > into->energy ||
+        (other.energy == into->energy && other.patch < into->patch)) {
+        into->energy = other.energy;
+        into->patch = other.patch;
+    }
+    into->proxels += other.proxels;
+    for (int band = 0; band < BANDS; ++band) left[band] += other_left[band];
+}
+
+// band_weight is 1 / emitted flux, 0 for a dark band.
+static void aim_at(__global Shot* shot, BlockSummary best, const __local float* left,
+                   const __global float* unshot, int stride, const __global float* band_weight,
+                   float tolerance, __global float* shot_flux) {
+    float unshot_fraction = 0.0f;
+    for (int band = 0; band < BANDS; ++band) {
+        unshot_fraction = max(unshot_fraction, left[band] * band_weight[band]);
+        shot_flux[band] = unshot[band * stride + best.patch];
+    }
+    shot->unshot_fraction = unshot_fraction;
+    shot->patch = best.patch;
+    if (unshot_fraction < tolerance) shot->status = kConverged;
+    if (!(best.energy > 0.0f)) shot->status = kExhausted;
+}
+
 __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* summaries,
                              const __global float* block_unshot, int block_count,
                              const __global float* unshot, int stride,
                              const __global float* band_weight, float tolerance, float per_proxel,
                              __global int* proxel_count, __global float* escaped,
                              __global float* shot_flux) {
-    __local float energy[REDUCE_PES];
-    __local int patch[REDUCE_PES];
-    __local uint proxels[REDUCE_PES];
+    __local BlockSummary summary[REDUCE_PES];
     __local float left[REDUCE_PES * BANDS];
-    if (shot->status != kRunning) return;
-
     const int pe = get_local_id(0);
-    float most = -1.0f;
-    int most_patch = 0;
-    uint proxel_sum = 0;
+    BlockSummary mine = {-1.0f, 0, 0u};
     for (int band = 0; band < BANDS; ++band) left[pe * BANDS + band] = 0.0f;
     for (int block = pe; block < block_count; block += REDUCE_PES) {
-        const BlockSummary summary = summaries[block];
-        if (summary.energy > most) {
-            most = summary.energy;
-            most_patch = summary.patch;
-        }
-        proxel_sum += summary.proxels;
+        const BlockSummary next = summaries[block];
+        const uint proxels = mine.proxels + next.proxels;
+        if (next.energy > mine.energy) mine = next;
+        mine.proxels = proxels;
         for (int band = 0; band < BANDS; ++band)
             left[pe * BANDS + band] += block_unshot[block * BANDS + band];
     }
-    energy[pe] = most;
-    patch[pe] = most_patch;
-    proxels[pe] = proxel_sum;
+    summary[pe] = mine;
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (pe != 0) return;
 
-    for (int other = 1; other < REDUCE_PES; ++other) {
-        const bool first = energy[other] > energy[0] ||
-                           (energy[other] == energy[0] && patch[other] < patch[0]);
-        if (first) {
-            energy[0] = energy[other];
-            patch[0] = patch[other];
-        }
-        proxels[0] += proxels[other];
-        for (int band = 0; band < BANDS; ++band) left[band] += left[other * BANDS + band];
+    // No work-item may leave before a barrier, see prefix_sum.cl.
+    if (pe == 0 && shot->status == kRunning) {
+        for (int other = 1; other < REDUCE_PES; ++other)
+            merge(summary, left, summary[other], left + other * BANDS);
+        if (shot->patch >= 0)
+            close_books(shot, shot_flux, summary[0].proxels, proxel_count + stride, per_proxel,
+                        escaped);
+        aim_at(shot, summary[0], left, unshot, stride, band_weight, tolerance, shot_flux);
     }
-    if (shot->patch >= 0)
-        close_books(shot, shot_flux, proxels[0], proxel_count + stride, per_proxel, escaped);
-
-    // band_weight is 1 / emitted flux, 0 for a dark band.
-    float unshot_fraction = 0.0f;
-    for (int band = 0; band < BANDS; ++band)
-        unshot_fraction = max(unshot_fraction, left[band] * band_weight[band]);
-    shot->unshot_fraction = unshot_fraction;
-    if (unshot_fraction < tolerance) shot->status = kConverged;
-    if (!(energy[0] > 0.0f)) shot->status = kExhausted;
-    shot->patch = patch[0];
-    for (int band = 0; band < BANDS; ++band)
-        shot_flux[band] = unshot[band * stride + patch[0]];
 }

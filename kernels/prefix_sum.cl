@@ -2,16 +2,18 @@
 // More entries than `capacity` halt the shot; the host then enlarges the buffer and repeats it.
 #include "shared.h"
 
+// PoCL 3.1 miscompiles a kernel whose work-items may leave before a barrier, so all of them stay.
 __kernel void prefix_sum(__global Shot* shot, __global int* values, int count, uint capacity) {
     __local uint sums[PREFIX_PES];
-    if (shot->status != kRunning) return;
     const int pe = get_local_id(0);
-    const int share = (count + PREFIX_PES - 1) / PREFIX_PES;
+    const bool running = shot->status == kRunning;
+    const int share = running ? (count + PREFIX_PES - 1) / PREFIX_PES : 0;
     const int first = min(pe * share, count), end = min(first + share, count);
     uint sum = 0;
     for (int i = first; i < end; ++i) sum += values[i];
     sums[pe] = sum;
     barrier(CLK_LOCAL_MEM_FENCE);
+
     uint before = 0;
     for (int other = 0; other < pe; ++other) before += sums[other];
     for (int i = first; i < end; ++i) {
@@ -19,7 +21,8 @@ __kernel void prefix_sum(__global Shot* shot, __global int* values, int count, u
         values[i] = before;
         before += value;
     }
-    if (pe != PREFIX_PES - 1) return;
-    shot->bin_entries = before;
-    if (before > capacity) shot->status = kBinsFull;
+    if (running && pe == PREFIX_PES - 1) {
+        shot->bin_entries = before;
+        if (before > capacity) shot->status = kBinsFull;
+    }
 }

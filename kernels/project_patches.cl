@@ -69,12 +69,13 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
     __local int_v owner[TILE_VECTORS];
     __local Projection batch[kBroadcastBatch];
     const int tile = get_group_id(0), pe = get_local_id(0);
-    if (shot->status != kRunning) return;
     const __global real_v* tile_roots = roots + tile * TILE_VECTORS;
 
     clear_plane(pe, escaped, tile_roots, depth, owner);
-    const int begin = tile == 0 ? 0 : list_end[tile * stack_count - 1];
-    const int end = list_end[(tile + 1) * stack_count - 1];
+    // No work-item may leave before a barrier, see prefix_sum.cl: a halted shot has empty lists.
+    const bool running = shot->status == kRunning;
+    const int begin = running && tile != 0 ? list_end[tile * stack_count - 1] : 0;
+    const int end = running ? list_end[(tile + 1) * stack_count - 1] : 0;
     for (int first = begin; first < end; first += kBroadcastBatch) {
         const int count = min(kBroadcastBatch, end - first);
         barrier(CLK_LOCAL_MEM_FENCE);
@@ -84,7 +85,7 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
             for (int area_column = 0; area_column < AREA_COLUMNS; ++area_column)
                 project(batch + k, tile, area_column, pe, tile_roots, depth, owner);
     }
-    sum_form_factors(owner, pe, proxel_count);
+    if (running) sum_form_factors(owner, pe, proxel_count);
 #ifdef KEEP_OWNERS
     for (int layer = 0; layer < LAYERS; ++layer)
         owners[tile * TILE_VECTORS + plural_index(layer, pe)] = owner[plural_index(layer, pe)];
