@@ -1,0 +1,96 @@
+// One shot of progressive radiosity in a furnished room, per plane resolution: the whole shot, and
+// the share of each kernel as counters. `bench_shot ROOM.obj`; every input polygon is a patch.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "scene/mesh.h"
+#include "scene/read_scene.h"
+#include "solver/bands.h"
+#include "solver/shot_pipeline.h"
+
+namespace hemirad {
+namespace {
+
+constexpr std::uint32_t kShooters = 64;  // spread evenly over the patches
+
+PatchLight even_light(const PatchArrays& patches) {
+    PatchLight light;
+    light.emitted.assign(patches.stride, 0.0f);
+    light.reflectance.assign(patches.stride, 0.0f);
+    for (std::uint32_t i = 0; i < patches.patch_count; ++i) {
+        light.emitted[i] = 1.0f / static_cast<float>(patches.patch_count);
+        light.reflectance[i] = 0.5f;
+    }
+    light.band_weight = {1.0f};
+    return light;
+}
+
+ShotPipeline pipeline_for(const PatchArrays& patches, std::uint32_t resolution, bool timed) {
+    PipelineSettings settings;
+    settings.resolution = resolution;
+    settings.timed = timed;
+    ShotPipeline pipeline(patches, even_light(patches), settings, mp1map::Device::open(""));
+    pipeline.init_plane();
+    return pipeline;
+}
+
+device::Shot shoot(ShotPipeline& pipeline, std::uint32_t patch) {
+    device::Shot shot = pipeline.shot();
+    shot.patch = static_cast<std::int32_t>(patch);
+    pipeline.set_shot(shot);
+    pipeline.aim_hemisphere(0);
+    pipeline.cull_patches();
+    pipeline.set_up_projection();
+    pipeline.count_areas();
+    pipeline.prefix_sum();
+    pipeline.bin_areas();
+    pipeline.project_patches();
+    pipeline.update_radiosity();
+    pipeline.choose_shooter();
+    return pipeline.shot();
+}
+
+void run_shots(benchmark::State& state, const PatchArrays& patches) {
+    const auto resolution = static_cast<std::uint32_t>(state.range(0));
+    ShotPipeline pipeline = pipeline_for(patches, resolution, false);
+    std::uint32_t shooter = 0;
+    const auto next = [&] {
+        return shooter++ % kShooters * (patches.patch_count / kShooters);
+    };
+    for (int warm_up = 0; warm_up < 8; ++warm_up) shoot(pipeline, next());
+    for (auto _ : state) benchmark::DoNotOptimize(shoot(pipeline, next()));
+
+    ShotPipeline timed = pipeline_for(patches, resolution, true);
+    for (std::uint32_t i = 0; i < kShooters; ++i) shoot(timed, next());
+    for (const auto& [name, cost] : timed.acu().kernel_seconds())
+        if (name != "init_plane") state.counters[name + "_ms"] = 1e3 * cost.first / kShooters;
+    state.counters["bytes_per_patch"] =
+        static_cast<double>(pipeline.device_bytes() - 4 * resolution * resolution) /
+        patches.patch_count;
+    state.counters["proxels/s"] =
+        benchmark::Counter(static_cast<double>(pipeline.disk_proxels()),
+                           benchmark::Counter::kIsIterationInvariantRate);
+}
+
+}  // namespace
+}  // namespace hemirad
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: bench_shot [--benchmark_...] ROOM.obj\n");
+        return 1;
+    }
+    hemirad::MeshSettings settings;
+    settings.patch_size = std::numeric_limits<double>::infinity();
+    const auto mesh = hemirad::build_mesh(hemirad::read_scene(argv[1]), settings);
+    const auto patches = hemirad::patch_arrays(mesh);
+    std::fprintf(stderr, "%s: %u patches\n", argv[1], patches.patch_count);
+    benchmark::RegisterBenchmark("shot", [&](benchmark::State& state) {
+        hemirad::run_shots(state, patches);
+    })->RangeMultiplier(2)->Range(128, 2048)->UseRealTime()->Unit(benchmark::kMillisecond);
+    benchmark::RunSpecifiedBenchmarks();
+}
