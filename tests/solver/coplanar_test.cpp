@@ -28,8 +28,6 @@ void expect_nothing_between_coplanar_patches(const Mesh& mesh, std::uint32_t res
         }
     }
     EXPECT_GT(pairs, mesh.patches.size());
-    testing::Test::RecordProperty("pairs", std::to_string(pairs));
-    std::printf("%llu pairs\n", static_cast<unsigned long long>(pairs));
 }
 
 TEST(CoplanarPatches, ReceiveNothingFromEachOtherAlongTheAxes) {

@@ -75,7 +75,8 @@ TEST(FullLists, InALaterHemisphereForgetTheEarlierOnes) {
     for (const auto& request : {kFineTiles, kOneTile}) {
         Shooters shooters(mesh, 64, 2, request);
         shooters.proxel_counts(0);
-        EXPECT_EQ(shooters.pipeline().shot().status == kBinsFull, request.width == kFineTiles.width);
+        EXPECT_EQ(shooters.pipeline().shot().status == kBinsFull,
+                  request.width == kFineTiles.width);
         shooters.count(0, 0);
         EXPECT_LT(shooters.pipeline().shot().bin_entries, 65536u);
     }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kResolution = 256;
 
-void expect_full_matrix_solution(const Mesh& mesh, std::uint32_t samples, const char* name) {
+void expect_full_matrix_solution(const Mesh& mesh, std::uint32_t samples) {
     ASSERT_LE(mesh.patches.size(), 500u);
     const auto matrix = Shooters(mesh, kResolution, samples).form_factor_matrix();
 
@@ -28,21 +28,19 @@ void expect_full_matrix_solution(const Mesh& mesh, std::uint32_t samples, const 
                     2e-6);
     }
     EXPECT_LT(largest, 2e-5);
-    testing::Test::RecordProperty(name, std::to_string(largest));
-    std::printf("%s: %zu patches, largest relative difference %.2g\n", name, mesh.patches.size(),
-                largest);
+    testing::Test::RecordProperty("largest_difference", std::to_string(largest));
 }
 
 TEST(FullMatrix, AgreesInAClosedFurnishedRoom) {
-    expect_full_matrix_solution(meshed(furnished_room(), 0.75), 1, "room");
+    expect_full_matrix_solution(meshed(furnished_room(), 0.75), 1);
 }
 
 TEST(FullMatrix, AgreesInTheOpenCornellBox) {
-    expect_full_matrix_solution(meshed(scene_named("cornell.gltf"), 0.11), 1, "cornell");
+    expect_full_matrix_solution(meshed(scene_named("cornell.gltf"), 0.11), 1);
 }
 
 TEST(FullMatrix, AgreesWithSeveralHemispheresAShooter) {
-    expect_full_matrix_solution(meshed(scene_named("cornell.gltf"), 0.2), 3, "cornell, 3 x 3");
+    expect_full_matrix_solution(meshed(scene_named("cornell.gltf"), 0.2), 3);
 }
 
 TEST(FullMatrix, OfTheScalarReferenceGivesTheSameRadiosity) {
@@ -62,15 +60,14 @@ TEST(FullMatrix, OfTheScalarReferenceGivesTheSameRadiosity) {
     const auto scalar = reference::form_factor_matrix(polygons, frames, kCoarse);
     const auto solution = solution_of(mesh, settings(kCoarse, 1e-6));
 
-    // Proxels on an edge may fall to either side; each is 1 / 3,228 of a shooter's flux.
+    // Owners differ where rounding decides only, which is rare where no edge runs through the
+    // centres of proxels.
     double largest = 0;
     for (std::size_t band = 0; band < mesh.bands.size(); ++band)
         largest = std::max(largest,
                            largest_difference(solution.radiosity[band],
                                               full_matrix_solution(mesh, scalar, band).radiosity));
-    std::printf("scalar reference: %zu patches, largest relative difference %.2g\n",
-                mesh.patches.size(), largest);
-    EXPECT_LT(largest, 1e-2);
+    EXPECT_LT(largest, 1e-3);
 }
 
 }  // namespace

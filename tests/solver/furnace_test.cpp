@@ -35,7 +35,8 @@ INSTANTIATE_TEST_SUITE_P(Walls, FurnaceBox,
 
 TEST_P(FurnaceBox, IsEquallyBrightEverywhere) {
     const Mesh mesh = mesh_of(GetParam());
-    ASSERT_EQ(mesh.patches.size(), static_cast<std::size_t>(6 * GetParam().cells * GetParam().cells));
+    ASSERT_EQ(mesh.patches.size(),
+              static_cast<std::size_t>(6 * GetParam().cells * GetParam().cells));
     const double radiosity = std::numbers::pi / (1 - GetParam().reflectance);
 
     const Solution solution = solution_of(mesh, settings(128, 1e-5));

@@ -51,7 +51,8 @@ inline Scene furnished_room() {
         for (int j = 0; j < 3; ++j)
             ceiling(xs[i], ys[j], xs[i + 1], ys[j + 1], i == 1 && j == 1 ? 1 : 0);
     for (const auto& face : solid_box({1, 1, 0}, {1.7, 1.9, 0.8})) add_face(scene, face, 2, 2);
-    for (const auto& face : solid_box({0.8, 0.9, 1.1}, {2.1, 2.2, 1.15})) add_face(scene, face, 3, 3);
+    for (const auto& face : solid_box({0.8, 0.9, 1.1}, {2.1, 2.2, 1.15}))
+        add_face(scene, face, 3, 3);
     for (const auto& face : solid_box({4.2, 2.3, 0}, {4.6, 2.7, 2.2})) add_face(scene, face, 2, 4);
     return scene;
 }
@@ -68,7 +69,9 @@ inline Scene moved(Scene scene, const glm::dvec3& by) {
 
 inline glm::dmat3 random_rotation(std::mt19937& random) {
     std::normal_distribution<double> normal;
-    const auto direction = [&] { return glm::dvec3(normal(random), normal(random), normal(random)); };
+    const auto direction = [&] {
+        return glm::dvec3(normal(random), normal(random), normal(random));
+    };
     const auto x = glm::normalize(direction());
     const auto y = glm::normalize(glm::cross(direction(), x));
     return {x, y, glm::cross(x, y)};
