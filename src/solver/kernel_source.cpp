@@ -32,11 +32,11 @@ std::optional<SourceFile> read_embedded(const std::string& path) {
 std::optional<SourceFile> find_file(const std::string& name,
                                     const std::optional<std::filesystem::path>& kernels_dir) {
     if (!kernels_dir) {
-        const auto file = read_embedded("kernels/" + name);
+        auto file = read_embedded("kernels/" + name);
         return file ? file : read_embedded("mp1map/" + name);
     }
-    if (const auto file = read_disk(*kernels_dir / name)) return file;
-    if (const auto file = read_disk(*kernels_dir / ".." / "mp1map" / name)) return file;
+    if (auto file = read_disk(*kernels_dir / name)) return file;
+    if (auto file = read_disk(*kernels_dir / ".." / "mp1map" / name)) return file;
     return read_embedded("mp1map/" + name);
 }
 
