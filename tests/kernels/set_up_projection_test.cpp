@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "reference/projector.h"
 #include "support/kernel_run.h"
 #include "support/patch_database.h"
