@@ -132,12 +132,15 @@ TEST(PeArray, MorePesThanAWorkGroupTakesAreRefused) {
 
 TEST(PeArray, ATileBeyondTheLocalMemoryIsRefused) {
     PeArrayRequest request;
-    request.tile_width = request.tile_height = 64;  // 32 KiB, and 16 KiB of patch parameters
+    request.tile_width = request.tile_height = 64;  // 32 KiB, and the broadcast's
 
     EXPECT_EQ(refusal(gpu(), request), "");
-    request.tile_height = 72;
-    EXPECT_EQ(refusal(gpu(), request),
-              "--tile 64x72: needs 36864 bytes of local memory; a GPU has 49152");
+    request.tile_height = 96;  // all of it, and nothing left for the broadcast
+    EXPECT_NE(refusal(gpu(), request), "");
+    request.tile_height = 128;
+    const auto message = refusal(gpu(), request);
+    EXPECT_EQ(message.find("--tile 64x128: "), 0u) << message;
+    EXPECT_NE(message.find("a GPU has 49152"), std::string::npos) << message;
 }
 
 }  // namespace
