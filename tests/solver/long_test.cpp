@@ -20,11 +20,12 @@ std::vector<Machine> all_machines() {
 }
 
 TEST(LongSameBits, OfTheCornellBox) {
-    expect_same_bytes(meshed(scene_named("cornell.gltf"), 0), settings(512, 1e-2), all_machines());
+    expect_same_bytes(meshed(scene_named("cornell.gltf"), 0), settings(512, 1e-3, 300),
+                      all_machines());
 }
 
 TEST(LongSameBits, OfTheSmallHall) {
-    expect_same_bytes(meshed(scene_named("hall2k.obj"), 0), settings(512, 1e-3, 1000),
+    expect_same_bytes(meshed(scene_named("hall2k.obj"), 0), settings(512, 1e-3, 150),
                       all_machines());
 }
 
