@@ -5,6 +5,12 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
+// The disk is turned against the patch's first edge by an angle of tangent 0.618..., the most
+// irrational of slopes: else the edges of a rectangular room run through rows of proxel centres,
+// and ties, which all go to the lowest patch, bias its form factors (0.3 % in a furnace at 512^2).
+#define kDiskCosine 0.85065081f
+#define kDiskSine 0.52573111f
+
 static float3 corner_of(const __global float* corners, int stride, int patch, int k) {
     const __global float* at = corners + 3 * k * stride + patch;
     return (float3)(at[0], at[stride], at[2 * stride]);
@@ -60,7 +66,8 @@ __kernel void aim_hemisphere(__global Shot* shot, const __global float* corners,
     const float3 normal =
         (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
     const float3 edge = corner[1] - corner[0];
-    const float3 u_axis = normalize(edge - normal * dot(edge, normal));
+    const float3 along = normalize(edge - normal * dot(edge, normal));
+    const float3 u_axis = kDiskCosine * along + kDiskSine * cross(normal, along);
     store_axis(u_axis, shot->u_axis);
     store_axis(cross(normal, u_axis), shot->v_axis);
     store_axis(normal, shot->normal);

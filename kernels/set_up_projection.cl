@@ -8,6 +8,12 @@ static Point depth_plane(const __global Shot* shot, Point normal, Point corner) 
     return scaled_v(-1.0f / dot_v(normal, corner), rotated_into(shot, normal));
 }
 
+// Spencer's approximation (app. A): -1/rho of one point, for all proxels of a patch.
+static Point constant_depth(Point centre) {
+    const Point result = {-1.0f / sqrt(dot_v(centre, centre)), (real_v)0.0f, (real_v)0.0f};
+    return result;
+}
+
 static void store_point(Point point, int lane, __global float* to) {
     to[0] = lane_of(point.x, lane);
     to[1] = lane_of(point.y, lane);
@@ -45,9 +51,15 @@ __kernel void set_up_projection(const __global Shot* shot, const __global float*
         }
         for (int k = 0; k < CORNERS; ++k)
             planes[k] = edge_plane(corner[k], corner[(k + 1) % CORNERS]);
+#ifdef DISTANCE_CONSTANT
+        Point centre = corner[0];
+        for (int k = 1; k < CORNERS; ++k) centre = sum_v(centre, corner[k]);
+        const Point depth_of = constant_depth(scaled_v((real_v)(1.0f / CORNERS), centre));
+#else
         const Point depth_of = depth_plane(
             shot, gathered_points(normals, stride, patches),
             relative_to(shot, gathered_points(corners, stride, patches)));
+#endif
         const Bounds bounds = clipped_bounds(corner, planes);
 
         __global Projection* to = projections + pe * depth + level;

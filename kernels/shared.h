@@ -29,7 +29,12 @@ typedef uint uint32_t;
 // one order whatever the PE array.
 #define kReduceBlock 64
 
-#define kBroadcastBatch 64  // patches whose parameters an array takes at once (sec. 1.5.3)
+// Counters of fig. 1.4b, of one shot: proxels inside an outline, areas visited by a patch, and
+// patches taken by a tile.
+#define kUsefulProxels 0
+#define kVisitedAreas 1
+#define kTilePatches 2
+#define kActivityCounters 3
 
 #define kRunning 0
 #define kConverged 1

@@ -9,15 +9,16 @@ constexpr std::size_t kPendingEvents = 4096;  // read back in blocks: an event h
 Acu::Acu(const Device& device, bool timed)
     : context_(device.context()), device_name_(device.summary().name), timed_(timed) {
     guarded("command queue", [&] {
-        queue_ = cl::CommandQueue(device.context(), device.handle(),
-                                  timed ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{});
+        queue_ =
+            cl::CommandQueue(device.context(), device.handle(),
+                             timed ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{});
     });
 }
 
 void Acu::fail(const std::string& name, const cl::Error& error) const {
-    const bool memory = error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-                        error.err() == CL_OUT_OF_RESOURCES || error.err() == CL_OUT_OF_HOST_MEMORY ||
-                        error.err() == CL_INVALID_BUFFER_SIZE;
+    const bool memory =
+        error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_RESOURCES ||
+        error.err() == CL_OUT_OF_HOST_MEMORY || error.err() == CL_INVALID_BUFFER_SIZE;
     throw DeviceError(device_name_ + ": " + name + ": " + error.what() +
                       " failed with OpenCL error " + std::to_string(error.err()) +
                       (memory ? " (out of memory)" : ""));
@@ -25,9 +26,8 @@ void Acu::fail(const std::string& name, const cl::Error& error) const {
 
 cl::Buffer Acu::zeroed(std::size_t bytes) {
     cl::Buffer buffer;
-    guarded("allocation of " + std::to_string(bytes) + " bytes", [&] {
-        buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
-    });
+    guarded("allocation of " + std::to_string(bytes) + " bytes",
+            [&] { buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes); });
     fill_zero(buffer, bytes);
     return buffer;
 }

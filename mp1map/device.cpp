@@ -77,12 +77,14 @@ std::string names_of(const std::vector<Found>& found) {
 
 const Found& first_choice(const std::vector<Found>& found) {
     const auto pocl_cpu = [](const Found& one) {
-        return one.summary.is_cpu && lower(one.summary.platform).find("portable") != std::string::npos;
+        return one.summary.is_cpu &&
+               lower(one.summary.platform).find("portable") != std::string::npos;
     };
     const auto cpu = [](const Found& one) { return one.summary.is_cpu; };
     if (const auto it = std::find_if(found.begin(), found.end(), pocl_cpu); it != found.end())
         return *it;
-    if (const auto it = std::find_if(found.begin(), found.end(), cpu); it != found.end()) return *it;
+    if (const auto it = std::find_if(found.begin(), found.end(), cpu); it != found.end())
+        return *it;
     return found.front();
 }
 

@@ -5,8 +5,12 @@
 namespace mp1map {
 namespace {
 
-constexpr std::uint32_t kCpuTile = 64;  // 32 KiB of depth and owner: fits a first-level cache
-constexpr std::uint32_t kArraysPerUnit = 4;  // enough to even out uneven stacks
+constexpr std::uint32_t kCpuTile = 64;        // 32 KiB of depth and owner: fits a first-level cache
+constexpr std::uint32_t kBytesPerProxel = 8;  // depth and owner
+constexpr std::uint32_t kBytesPerPatch = 80;  // projection parameters, and room on the X-net
+constexpr std::uint32_t kSpareBytes = 2048;   // that drivers take for themselves
+constexpr std::uint32_t kBatchPatches = 64;   // 4.5 KiB: two barriers a batch cost nothing then
+constexpr std::uint32_t kArraysPerUnit = 4;   // enough to even out uneven stacks
 
 std::uint32_t native_lanes(const DeviceSummary& device) {
     if (!device.is_cpu) return 1;
@@ -24,13 +28,18 @@ void check_lanes(std::uint32_t lanes) {
         throw NoSuchDevice("--lanes " + std::to_string(lanes) + ": must be 1, 4, 8 or 16");
 }
 
-void check_fits(const DeviceSummary& device, const PeArray& array) {
-    if (array.pe_count() > device.max_work_group)
+void check_work_group(const DeviceSummary& device, const PeArray& array) {
+    if (std::uint64_t{array.width} * array.height > device.max_work_group)
         throw NoSuchDevice("--pe " + std::to_string(array.width) + "x" +
                            std::to_string(array.height) + ": " + device.name + " takes at most " +
                            std::to_string(device.max_work_group) + " work-items a group");
-    const std::uint64_t bytes = std::uint64_t{array.bytes_per_pe()} * array.pe_count();
-    if (bytes + 16384 > device.local_memory)  // 16 KiB: a batch of patch parameters
+}
+
+void check_local_memory(const DeviceSummary& device, const PeArray& array) {
+    const std::uint64_t bytes =
+        std::uint64_t{array.tile_width} * array.tile_height * kBytesPerProxel;
+    const std::uint64_t batch = std::uint64_t{array.broadcast_patches()} * kBytesPerPatch;
+    if (bytes + batch + kSpareBytes > device.local_memory)
         throw NoSuchDevice("--tile " + std::to_string(array.tile_width) + "x" +
                            std::to_string(array.tile_height) + ": needs " + std::to_string(bytes) +
                            " bytes of local memory; " + device.name + " has " +
@@ -39,27 +48,47 @@ void check_fits(const DeviceSummary& device, const PeArray& array) {
 
 }  // namespace
 
+std::uint32_t PeArray::broadcast_patches() const {
+    if (broadcast == Broadcast::patch) return 1;
+    return broadcast == Broadcast::level ? pe_count() : kBatchPatches;
+}
+
+std::uint32_t PeArray::proxel_place(std::uint32_t x, std::uint32_t y) const {
+    const std::uint32_t columns = tile_width / area_width(), rows = tile_height / area_height();
+    const bool cyclic = layout == Layout::cyclic;
+    const std::uint32_t vector = x / lanes;
+    const std::uint32_t pe_x = cyclic ? vector % width : vector / columns;
+    const std::uint32_t pe_y = cyclic ? y % height : y / rows;
+    const std::uint32_t area_x = cyclic ? vector / width : vector % columns;
+    const std::uint32_t area_y = cyclic ? y / height : y % rows;
+    const std::uint32_t layer = area_y * columns + area_x, pe = pe_y * width + pe_x;
+    return (layer * pe_count() + pe) * lanes + x % lanes;
+}
+
 std::string PeArray::description() const {
-    return std::to_string(width) + "x" + std::to_string(height) + " PEs, " +
-           std::to_string(lanes) + (lanes == 1 ? " lane" : " lanes") + ", tile " +
-           std::to_string(tile_width) + "x" + std::to_string(tile_height);
+    return std::to_string(width) + "x" + std::to_string(height) + " PEs, " + std::to_string(lanes) +
+           (lanes == 1 ? " lane" : " lanes") + ", tile " + std::to_string(tile_width) + "x" +
+           std::to_string(tile_height);
 }
 
 PeArray fit_pe_array(const DeviceSummary& device, const PeArrayRequest& request) {
     PeArray array;
+    array.layout = request.layout;
+    array.broadcast = request.broadcast;
     array.lanes = request.lanes != 0 ? request.lanes : native_lanes(device);
     check_lanes(array.lanes);
     array.width = request.width != 0 ? request.width : device.is_cpu ? kCpuTile / array.lanes : 32;
     array.height = request.height != 0 ? request.height : device.is_cpu ? 1 : 8;
     const std::uint32_t tile = device.is_cpu ? kCpuTile : 32;
-    array.tile_width = rounded_up(request.tile_width != 0 ? request.tile_width : tile,
-                                  array.area_width());
-    array.tile_height = rounded_up(request.tile_height != 0 ? request.tile_height : tile,
-                                   array.area_height());
+    check_work_group(device, array);
+    array.tile_width =
+        rounded_up(request.tile_width != 0 ? request.tile_width : tile, array.area_width());
+    array.tile_height =
+        rounded_up(request.tile_height != 0 ? request.tile_height : tile, array.area_height());
     const std::uint32_t wanted = std::max(1u, device.compute_units) * kArraysPerUnit;
     // Large arrays have PEs enough in fewer of them; a stack of a few patches only costs bins.
     array.array_count = std::clamp(256u / array.pe_count(), 1u, wanted);
-    check_fits(device, array);
+    check_local_memory(device, array);
     return array;
 }
 

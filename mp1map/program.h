@@ -15,7 +15,8 @@ struct Kernel {
 };
 
 /// Compiles `source`, which holds a kernel of each of the names, as one program: the compiler reads
-/// its built-ins once. `options` as for the OpenCL C compiler. Throws DeviceError with the build log.
+/// its built-ins once. `options` as for the OpenCL C compiler. Throws DeviceError with the build
+/// log.
 std::map<std::string, Kernel> build_kernels(const Device& device,
                                             const std::vector<std::string>& names,
                                             const std::string& source, const std::string& options);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <optional>
 
 namespace hemirad {
 namespace {
@@ -24,14 +23,13 @@ double strongest_emission(const Mesh& mesh, std::size_t band) {
     return strongest;
 }
 
-// Emission of band b over that of band a, where the same for every material: 1, or by their
-// strongest emitters.
-std::optional<double> emission_ratio(const Mesh& mesh, std::size_t a, std::size_t b) {
+// Whether band b's emission is one multiple of band a's for every material.
+bool proportional_emission(const Mesh& mesh, std::size_t a, std::size_t b) {
     const double of_a = strongest_emission(mesh, a), of_b = strongest_emission(mesh, b);
-    if (of_a == 0 || of_b == 0) return of_a == of_b ? std::optional(1.0) : std::nullopt;
-    for (const auto& material : mesh.materials)
-        if (material.emission[a] * (of_b / of_a) != material.emission[b]) return std::nullopt;
-    return of_b / of_a;
+    if (of_a == 0 || of_b == 0) return of_a == of_b;
+    return std::all_of(mesh.materials.begin(), mesh.materials.end(), [&](const Material& material) {
+        return material.emission[a] * (of_b / of_a) == material.emission[b];
+    });
 }
 
 }  // namespace
@@ -39,16 +37,13 @@ std::optional<double> emission_ratio(const Mesh& mesh, std::size_t a, std::size_
 BandPlan plan_bands(const Mesh& mesh) {
     BandPlan plan;
     for (std::size_t band = 0; band < mesh.bands.size(); ++band) {
-        std::size_t shared = 0;
-        std::optional<double> ratio;
-        for (; shared < plan.solved.size(); ++shared) {
-            const std::size_t other = plan.solved[shared];
-            if (!same_reflectance(mesh, other, band)) continue;
-            if ((ratio = emission_ratio(mesh, other, band))) break;
-        }
-        if (!ratio) plan.solved.push_back(band);
-        plan.solution.push_back(shared);
-        plan.emission_scale.push_back(ratio.value_or(1.0));
+        const auto same =
+            std::find_if(plan.solved.begin(), plan.solved.end(), [&](std::size_t other) {
+                return same_reflectance(mesh, other, band) &&
+                       proportional_emission(mesh, other, band);
+            });
+        plan.solution.push_back(static_cast<std::size_t>(same - plan.solved.begin()));
+        if (same == plan.solved.end()) plan.solved.push_back(band);
     }
     return plan;
 }

@@ -10,9 +10,8 @@ namespace hemirad {
 /// Which bands have to be solved. Bands of equal reflectance whose emission is proportional share
 /// one solution: a grey scene is solved once, whatever its file names.
 struct BandPlan {
-    std::vector<std::size_t> solved;     ///< scene bands, one for each solution
-    std::vector<std::size_t> solution;   ///< [scene band] index into `solved`
-    std::vector<double> emission_scale;  ///< [scene band] its emission over the solved band's
+    std::vector<std::size_t> solved;    ///< scene bands, one for each solution
+    std::vector<std::size_t> solution;  ///< [scene band] index into `solved`
 };
 
 BandPlan plan_bands(const Mesh& mesh);

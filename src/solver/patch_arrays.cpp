@@ -30,7 +30,9 @@ double normalising_scale(const Extent& extent) {
     if (!(largest > 0) || !std::isfinite(largest))
         throw InputError("the scene's extent of " + std::to_string(2 * largest) +
                          " m cannot be normalised");
-    return std::ldexp(1.0, -static_cast<int>(std::ceil(std::log2(largest))));
+    int exponent = 0;  // largest = fraction * 2^exponent, fraction in [1/2, 1)
+    const double fraction = std::frexp(largest, &exponent);
+    return std::ldexp(1.0, fraction == 0.5 ? 1 - exponent : -exponent);
 }
 
 bool only_triangles(const Mesh& mesh) {

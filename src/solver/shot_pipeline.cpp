@@ -11,7 +11,8 @@ namespace hemirad {
 namespace {
 
 constexpr std::uint32_t kWidestLanes = 16;
-// PEs of the two kernels that one array runs alone; any number gives the same bits.
+// PEs of the two kernels that one array runs alone. Fixed: kReducePes decides the order in which
+// choose_shooter adds the blocks' unshot fluxes.
 constexpr std::uint32_t kPrefixPes = 64, kReducePes = 64;
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
@@ -37,14 +38,23 @@ std::string definition(const char* name, std::uint64_t value) {
     return std::string(" -D") + name + "=" + std::to_string(value);
 }
 
+std::string flag(const char* name, bool set) { return set ? std::string(" -D") + name : ""; }
+
 std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution,
-                          std::uint32_t corner_count, std::size_t bands, bool keep_owners) {
+                          std::uint32_t corner_count, std::size_t bands,
+                          const PipelineSettings& settings) {
     return definition("LANES", array.lanes) + definition("PE_WIDTH", array.width) +
            definition("PE_HEIGHT", array.height) + definition("TILE_WIDTH", array.tile_width) +
            definition("TILE_HEIGHT", array.tile_height) + definition("RESOLUTION", resolution) +
            definition("CORNERS", corner_count) + definition("BANDS", bands) +
            definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
-           (keep_owners ? " -DKEEP_OWNERS" : "");
+           definition("BROADCAST_PATCHES", array.broadcast_patches()) +
+           flag("LAYOUT_BLOCK", array.layout == mp1map::Layout::block) +
+           flag("EVALUATE_INCREMENTAL", settings.variants.incremental) +
+           flag("DISTANCE_CONSTANT", settings.variants.constant_distance) +
+           flag("ACCUMULATE_XNET", settings.variants.xnet) +
+           flag("COUNT_ACTIVITY", settings.count_activity) +
+           flag("KEEP_OWNERS", settings.keep_owners);
 }
 
 device::Shot first_shot() {
@@ -125,6 +135,8 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     proxel_count_ = acu_.plural<std::int32_t>(stride_ + 2);
     owners_ = acu_.plural<std::int32_t>(settings.keep_owners ? roots_.size() : 0);
 
+    activity_ = acu_.plural<std::uint32_t>(kActivityCounters);
+
     const std::size_t states = band_count_ * stride_;
     received_ = acu_.plural<float>(states);
     received_rest_ = acu_.plural<float>(states);
@@ -141,7 +153,7 @@ void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSet
                                  std::uint32_t corner_count) {
     const auto start = std::chrono::steady_clock::now();
     const std::string options =
-        build_options(array_, resolution_, corner_count, band_count_, settings.keep_owners);
+        build_options(array_, resolution_, corner_count, band_count_, settings);
     std::string source;
     for (const auto& name : kernel_names()) source += kernel_source(name, settings.kernels_dir);
     kernels_ = mp1map::build_kernels(device, kernel_names(), source, options);
@@ -190,7 +202,7 @@ void ShotPipeline::bin_areas() {
 void ShotPipeline::project_patches() {
     acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, list_end_,
                lists_, std::int32_t(stack_count_), std::int32_t(escaped_owner()), proxel_count_,
-               owners_);
+               owners_, activity_);
 }
 
 void ShotPipeline::update_radiosity() {
@@ -238,24 +250,26 @@ std::vector<double> ShotPipeline::escaped() {
 
 std::vector<std::int32_t> ShotPipeline::proxel_counts() { return acu_.unload(proxel_count_); }
 
+Activity ShotPipeline::activity() {
+    const auto totals = acu_.unload(activity_);
+    acu_.clear(activity_);
+    return {totals[kUsefulProxels], totals[kVisitedAreas], totals[kTilePatches]};
+}
+
+std::vector<std::int32_t> ShotPipeline::stack_heights() { return acu_.unload(stack_height_); }
+
 std::vector<std::int32_t> ShotPipeline::owners() {
     const auto plural = acu_.unload(owners_);
     std::vector<std::int32_t> owners(std::size_t{resolution_} * resolution_);
     const std::uint32_t tile_columns = quotient_up(resolution_, array_.tile_width);
-    const std::uint32_t area_columns = array_.tile_width / array_.area_width();
+    const std::size_t tile_proxels = std::size_t{array_.tile_width} * array_.tile_height;
     for (std::uint32_t row = 0; row < resolution_; ++row)
         for (std::uint32_t column = 0; column < resolution_; ++column) {
-            const std::uint32_t x = column % array_.tile_width, y = row % array_.tile_height;
             const std::uint32_t tile =
                 row / array_.tile_height * tile_columns + column / array_.tile_width;
-            const std::uint32_t layer =
-                y / array_.area_height() * area_columns + x / array_.area_width();
-            const std::uint32_t pe =
-                y % array_.area_height() * array_.width + x % array_.area_width() / array_.lanes;
-            const std::size_t in_tile =
-                (std::size_t{layer} * array_.pe_count() + pe) * array_.lanes + x % array_.lanes;
             owners[std::size_t{row} * resolution_ + column] =
-                plural[std::size_t{tile} * array_.tile_width * array_.tile_height + in_tile];
+                plural[tile * tile_proxels +
+                       array_.proxel_place(column % array_.tile_width, row % array_.tile_height)];
         }
     return owners;
 }

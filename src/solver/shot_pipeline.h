@@ -15,6 +15,21 @@
 
 namespace hemirad {
 
+/// Variants of the paper that the fastest form leaves out. All but `incremental` and `constant`
+/// give the same bits.
+struct Variants {
+    bool incremental = false;        ///< sec. 1.6: further areas by summing deltas
+    bool constant_distance = false;  ///< app. A: Spencer's one distance a patch
+    bool xnet = false;               ///< sec. 1.5.4: form factors gathered over the X-net
+};
+
+/// What fig. 1.4b counts, of the last shot.
+struct Activity {
+    std::uint32_t useful_proxels = 0;  ///< inside an outline
+    std::uint32_t visited_areas = 0;   ///< by a patch
+    std::uint32_t tile_patches = 0;    ///< patches taken by a tile
+};
+
 struct PipelineSettings {
     std::uint32_t resolution = 512;
     std::uint32_t shooter_samples = 1;
@@ -22,7 +37,9 @@ struct PipelineSettings {
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;
     bool timed = false;
-    bool keep_owners = false;  ///< for tests: owners() after each projection
+    Variants variants;
+    bool count_activity = false;  ///< activity() after each projection
+    bool keep_owners = false;     ///< for tests: owners() after each projection
 };
 
 /// Flux and reflectance of the solved bands, [band * stride + patch]; the fluxes of a band add up
@@ -65,6 +82,8 @@ class ShotPipeline {
     /// Owner of proxel row * resolution + column; patch_count() + padding: escaped. keep_owners.
     std::vector<std::int32_t> owners();
     std::int32_t escaped_owner() const { return static_cast<std::int32_t>(stride_); }
+    Activity activity();                        ///< since the last call; count_activity
+    std::vector<std::int32_t> stack_heights();  ///< visible patches of each PE, of the last shot
     std::vector<device::Projection> projections();  ///< of the last shot, in patch order
 
     std::uint64_t disk_proxels() const { return disk_proxels_; }
@@ -100,6 +119,7 @@ class ShotPipeline {
     mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;
     mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
+    mp1map::Plural<std::uint32_t> activity_;
     mp1map::Plural<device::BlockSummary> summaries_;
 };
 

@@ -15,10 +15,10 @@ struct Ledger {
 
 /// Radiosity of every patch of a mesh, finished or so far.
 struct Solution {
-    std::vector<std::string> bands;                ///< as in the mesh
-    std::vector<std::vector<double>> irradiance;   ///< [band][patch], W/m^2
-    std::vector<std::vector<double>> radiosity;    ///< [band][patch], W/m^2, own emission included
-    std::vector<Ledger> ledger;                    ///< [band]
+    std::vector<std::string> bands;               ///< as in the mesh
+    std::vector<std::vector<double>> irradiance;  ///< [band][patch], W/m^2
+    std::vector<std::vector<double>> radiosity;   ///< [band][patch], W/m^2, own emission included
+    std::vector<Ledger> ledger;                   ///< [band]
     std::uint64_t shots = 0;
     double unshot_fraction = 0;  ///< unshot / emitted flux, the largest of the bands
     bool converged = false;      ///< false: stopped by a limit

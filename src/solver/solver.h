@@ -19,16 +19,17 @@
 namespace hemirad {
 
 struct SolverSettings {
-    std::uint32_t resolution = 512;    ///< N x N proxels on the square around the disk, 16 to 8192
-    std::uint32_t shooter_samples = 1; ///< M x M hemispheres a shooting patch
-    double tolerance = 1e-3;           ///< stop where unshot / emitted is below, in every band
+    std::uint32_t resolution = 512;     ///< N x N proxels on the square around the disk, 16 to 8192
+    std::uint32_t shooter_samples = 1;  ///< M x M hemispheres a shooting patch
+    double tolerance = 1e-3;            ///< stop where unshot / emitted is below, in every band
     std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
     double time_limit = std::numeric_limits<double>::infinity();  ///< s
-    /// Calls back whenever the shots reach a multiple of this, besides a few times a second; 0: not.
+    /// Calls back whenever the shots reach a multiple of this, besides a few times a second; 0:
+    /// not.
     std::uint64_t stop_every = 0;
-    mp1map::PeArrayRequest pe_array;
-    std::optional<std::filesystem::path> kernels_dir;  ///< read kernels from here
-    bool timed = false;                                ///< keep the seconds of each kernel
+    mp1map::PeArrayRequest pe_array = {};
+    std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
+    bool timed = false;                                     ///< keep the seconds of each kernel
 };
 
 struct Progress {

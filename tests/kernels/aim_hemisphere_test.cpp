@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 
 #include "support/kernel_run.h"
@@ -136,7 +138,7 @@ TEST(AimHemisphere, OriginIsTheCentroidOfThatPartOfATriangleOfThreeOrFourCorners
     }
 }
 
-TEST(AimHemisphere, TheFrameIsRightHandedAndItsUAxisRunsAlongTheFirstEdge) {
+TEST(AimHemisphere, TheFrameIsRightHandedAndTurnedAgainstTheFirstEdgeByTheGoldenSlope) {
     const auto arrays = random_patches(50, 4, 5);
     AimHemisphere aim(arrays);
 
@@ -150,7 +152,10 @@ TEST(AimHemisphere, TheFrameIsRightHandedAndItsUAxisRunsAlongTheFirstEdge) {
         EXPECT_LT(glm::distance(glm::cross(frame.normal, frame.u_axis), frame.v_axis), 4 * 0x1p-24);
         EXPECT_NEAR(glm::length(frame.u_axis), 1, 4 * 0x1p-24);
         // Corners are rounded to half an ulp of 1; a short edge turns by as much more.
-        EXPECT_GT(glm::dot(frame.u_axis, glm::normalize(edge)), 1 - 1e-6);
+        const auto along = glm::normalize(edge);
+        const double slope = glm::dot(frame.u_axis, glm::cross(frame.normal, along)) /
+                             glm::dot(frame.u_axis, along);
+        EXPECT_NEAR(slope, (std::sqrt(5.0) - 1) / 2, 1e-5);
     }
 }
 

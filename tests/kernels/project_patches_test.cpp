@@ -14,7 +14,7 @@ constexpr double kBound = 2 * kEdgeMargin;
 
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0);
 
-std::int64_t count(const std::vector<int>& owners, int patch) {
+std::int64_t owned_by(const std::vector<int>& owners, int patch) {
     return std::count(owners.begin(), owners.end(), patch);
 }
 
@@ -29,7 +29,7 @@ class ProjectPatches : public testing::TestWithParam<Shape> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Shapes, ProjectPatches, testing::ValuesIn(shapes()),
-                         [](const auto& info) { return name_of(info.param); });
+                         [](const auto& shape) { return name_of(shape.param); });
 
 TEST_P(ProjectPatches, NearerPatchHidesFarther) {
     const auto floor = square({0, 0, 0}, kX, kY, 1);
@@ -37,9 +37,9 @@ TEST_P(ProjectPatches, NearerPatchHidesFarther) {
 
     const auto owners = owners_seen_by_first({floor, far, near}, 64);
 
-    EXPECT_EQ(count(owners, 1), 0);
+    EXPECT_EQ(owned_by(owners, 1), 0);
     // Centre of a square of side 2 at distance 1, Lambert: 4 / (pi sqrt 2) * atan(1 / sqrt 2).
-    EXPECT_NEAR(static_cast<double>(count(owners, 2)) / disk_proxel_count(64), 0.5541, 5e-3);
+    EXPECT_NEAR(static_cast<double>(owned_by(owners, 2)) / disk_proxel_count(64), 0.5541, 5e-3);
 }
 
 TEST_P(ProjectPatches, ATieGoesToTheLowestPatch) {
@@ -47,14 +47,14 @@ TEST_P(ProjectPatches, ATieGoesToTheLowestPatch) {
 
     const auto owners = owners_seen_by_first({floor, ceiling, ceiling, ceiling}, 64);
 
-    EXPECT_GT(count(owners, 1), 0);
-    EXPECT_EQ(count(owners, 2) + count(owners, 3), 0);
+    EXPECT_GT(owned_by(owners, 1), 0);
+    EXPECT_EQ(owned_by(owners, 2) + owned_by(owners, 3), 0);
 }
 
 TEST_P(ProjectPatches, EveryProxelInTheDiskHasOneOwner) {
     const auto owners = owners_seen_by_first(soup(100, 0.3, 1), 100);
 
-    EXPECT_EQ(100 * 100 - count(owners, reference::kOutsideDisk),
+    EXPECT_EQ(100 * 100 - owned_by(owners, reference::kOutsideDisk),
               static_cast<std::int64_t>(disk_proxel_count(100)));
 }
 
@@ -64,7 +64,7 @@ TEST_P(ProjectPatches, NothingEscapesFromAClosedBox) {
         aimed.aim(patch);
         aimed.project();
 
-        EXPECT_EQ(count(aimed.owners(), reference::kEscaped), 0) << "shooter " << patch;
+        EXPECT_EQ(owned_by(aimed.owners(), reference::kEscaped), 0) << "shooter " << patch;
     }
 }
 

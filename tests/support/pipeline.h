@@ -14,7 +14,13 @@ namespace hemirad::test {
 struct Shape {
     std::uint32_t width, height, lanes, tile_width, tile_height;
 
-    mp1map::PeArrayRequest request() const { return {width, height, lanes, tile_width, tile_height}; }
+    mp1map::PeArrayRequest request() const {
+        return {.width = width,
+                .height = height,
+                .lanes = lanes,
+                .tile_width = tile_width,
+                .tile_height = tile_height};
+    }
 };
 
 inline std::string name_of(const Shape& shape) {
@@ -27,9 +33,9 @@ inline std::ostream& operator<<(std::ostream& out, const Shape& shape) {
 }
 
 inline const std::vector<Shape>& shapes() {
-    static const std::vector<Shape> all = {
-        {4, 1, 16, 64, 64}, {8, 8, 1, 64, 64},   {16, 16, 4, 64, 64},
-        {32, 32, 1, 32, 32}, {64, 64, 1, 64, 64}, {2, 3, 8, 48, 33}};
+    static const std::vector<Shape> all = {{4, 1, 16, 64, 64},  {8, 8, 1, 64, 64},
+                                           {16, 16, 4, 64, 64}, {32, 32, 1, 32, 32},
+                                           {64, 64, 1, 64, 64}, {2, 3, 8, 48, 33}};
     return all;
 }
 
@@ -48,12 +54,13 @@ inline PatchLight grey_light(const PatchArrays& patches, float reflectance = 0.5
 /// A pipeline whose next shooter is `patch`, aimed and ready to be projected.
 class Aimed {
   public:
-    Aimed(const std::vector<Polygon>& polygons, const Shape& shape, std::uint32_t resolution)
+    Aimed(const std::vector<Polygon>& polygons, const Shape& shape, std::uint32_t resolution,
+          PipelineSettings base = {})
         : mesh_(mesh_of(polygons)),
           arrays_(patch_arrays(mesh_)),
           polygons_(normalised(polygons, arrays_)),
           device_(mp1map::Device::open("")),
-          pipeline_(arrays_, grey_light(arrays_), settings(shape, resolution), device_) {
+          pipeline_(arrays_, grey_light(arrays_), settings(base, shape, resolution), device_) {
         pipeline_.init_plane();
     }
 
@@ -93,10 +100,14 @@ class Aimed {
     }
 
   private:
-    static PipelineSettings settings(const Shape& shape, std::uint32_t resolution) {
-        PipelineSettings result;
+    static PipelineSettings settings(PipelineSettings result, const Shape& shape,
+                                     std::uint32_t resolution) {
+        const auto layout = result.pe_array.layout;
+        const auto broadcast = result.pe_array.broadcast;
         result.resolution = resolution;
         result.pe_array = shape.request();
+        result.pe_array.layout = layout;
+        result.pe_array.broadcast = broadcast;
         result.keep_owners = true;
         return result;
     }
