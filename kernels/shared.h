@@ -13,12 +13,14 @@ typedef int int32_t;
 typedef uint uint32_t;
 #endif
 
-// The scene is normalised into [-1, 1]. kEdgeMargin is how far a vertex, a ray and a plane
-// together may be off by single precision, as a length: a vertex rounded to float is displaced by
-// up to sqrt(3) * 2^-25; its difference to the shooter, its rotation and the cross product of an
-// edge, over distances up to 2 sqrt(3), add at most 12 roundings of 2^-24 * 3.5, in practice a
-// quarter of that. Every test of an edge, a facing or a horizon grants this margin, so no proxel
-// is lost between neighbours; what two patches then both claim goes to the nearer one.
+// The scene is normalised into [-1, 1]. kEdgeMargin is the length by which every arc is moved
+// outwards, so that no proxel is lost between neighbours; what two patches then both claim goes
+// to the nearer one. It stands for the rounding of an arc's value: with e = 2^-24 and distances up
+// to r, a vertex is displaced by 0.9 e when it becomes a float, by r e in its difference to the
+// shooter, and rotation, cross product, normalisation and evaluation add about 3 r e each where
+// their errors are random. Across half of the scene, r = 1, that is 12.6 e = 7.5e-7. The errors of
+// all steps in one direction at opposite corners (r = 3.5) would be four times as much; no case
+// of that is known, and the tests look for it.
 #define kEdgeMargin 7.5e-7f
 // A patch is seen only if the shooter lies in front of its plane, and it in front of the
 // shooter's, by more than that: below, nothing but rounding tells front from back. Half of the
