@@ -16,6 +16,9 @@ target_include_directories(hemirad_library INTERFACE
     $<INSTALL_INTERFACE:${headers}>)
 
 install(TARGETS hemirad RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# What `hemirad sweep` takes unless told otherwise.
+install(FILES scenes/hall2k.obj scenes/hall2k.mtl scenes/hall14k.obj scenes/hall14k.mtl
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/hemirad/scenes)
 install(TARGETS hemirad_library hemirad_solver hemirad_lightmap hemirad_scene mp1map hemirad_flags
     EXPORT hemirad-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT hemirad-targets NAMESPACE hemirad:: DESTINATION ${package})

@@ -6,6 +6,7 @@
 #include "cli/exit_codes.h"
 #include "cli/info.h"
 #include "cli/solve.h"
+#include "cli/sweep.h"
 #include "errors.h"
 #include "scene/printable.h"
 
@@ -40,6 +41,7 @@ CommandLine::CommandLine()
     add_solve(app_, chosen_);
     add_info(app_, chosen_);
     add_devices(app_, chosen_);
+    add_sweep(app_, chosen_);
     for (auto* const command : app_.get_subcommands({})) command->allow_extras();
 }
 

@@ -71,6 +71,37 @@ std::uint32_t lanes(const OptionValue& value) {
     return kLanes[one_of(value, {"1", "4", "8", "16"})];
 }
 
+void add_plane_options(CLI::App& command, mp1map::PeArrayRequest& array) {
+    add_value(command, {"--layout", "cyclic|block", "how proxels are dealt to the PEs [cyclic]"},
+              [&](const OptionValue& value) {
+                  array.layout = static_cast<mp1map::Layout>(one_of(value, {"cyclic", "block"}));
+              });
+    add_value(command, {"--broadcast", "patch|batch|level", "patches diffused at a time [batch]"},
+              [&](const OptionValue& value) {
+                  array.broadcast =
+                      static_cast<mp1map::Broadcast>(one_of(value, {"patch", "batch", "level"}));
+              });
+}
+
+void add_variant_options(CLI::App& command, Variants& variants) {
+    add_value(command,
+              {"--evaluate", "direct|incremental",
+               "arcs in further areas: anew, or by deltas "
+               "that drift [direct]"},
+              [&](const OptionValue& value) {
+                  variants.incremental = one_of(value, {"direct", "incremental"}) == 1;
+              });
+    add_value(command,
+              {"--accumulate", "histogram|xnet", "how form factors are gathered [histogram]"},
+              [&](const OptionValue& value) {
+                  variants.xnet = one_of(value, {"histogram", "xnet"}) == 1;
+              });
+    add_value(command, {"--distance", "true|constant", "of each proxel, or one a patch [true]"},
+              [&](const OptionValue& value) {
+                  variants.constant_distance = one_of(value, {"true", "constant"}) == 1;
+              });
+}
+
 void add_machine_options(CLI::App& command, SolveOptions& options) {
     auto& array = options.solver.pe_array;
     add_text(command,
@@ -95,6 +126,8 @@ void add_machine_options(CLI::App& command, SolveOptions& options) {
                   array.tile_width = width;
                   array.tile_height = height;
               });
+    add_plane_options(command, array);
+    add_variant_options(command, options.solver.variants);
     add_text(command, {"--kernels", "FOLDER", "read the kernels from here, not from the program"},
              options.solver.kernels_dir);
 }
@@ -143,6 +176,8 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         result.emplace_back("--max-shots", std::to_string(solver.max_shots));
     if (std::isfinite(solver.time_limit))
         result.emplace_back("--time-limit", number_text(solver.time_limit));
+    if (solver.variants.incremental) result.emplace_back("--evaluate", "incremental");
+    if (solver.variants.constant_distance) result.emplace_back("--distance", "constant");
     return result;
 }
 

@@ -43,8 +43,8 @@ void add_scene(CLI::App& command, std::filesystem::path& scene);
 /// --resolution, of solve and info.
 void add_resolution(CLI::App& command, std::uint32_t& resolution);
 
-/// The options that decide on the result, as name and value, defaults resolved: the machine model
-/// and the device are not among them, since they change no bit.
+/// The options that decide on the result, as name and value, defaults resolved: the device
+/// and most of the machine model are not among them, since they change no bit.
 std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options);
 
 std::string name_of(Quantity quantity);

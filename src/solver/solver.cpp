@@ -38,6 +38,7 @@ PipelineSettings pipeline_settings(const SolverSettings& settings) {
     result.shooter_samples = settings.shooter_samples;
     result.tolerance = settings.tolerance;
     result.pe_array = settings.pe_array;
+    result.variants = settings.variants;
     result.kernels_dir = settings.kernels_dir;
     result.timed = settings.timed;
     return result;

@@ -28,6 +28,7 @@ struct SolverSettings {
     /// not.
     std::uint64_t stop_every = 0;
     mp1map::PeArrayRequest pe_array = {};
+    Variants variants = {};
     std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
     bool timed = false;                                     ///< keep the seconds of each kernel
 };
