@@ -61,7 +61,7 @@ struct SweepMeasurement {
     double stack_fill = 0;              ///< visible patches over slots up to that level
     double tile_patches = 0;            ///< that the arrays took, those of several tiles anew
     double areas = 0, useful = 0;       ///< visited areas; proxels inside, summed over them
-    double seconds_min = 0, seconds_median = 0;         ///< of a shot
+    double seconds_min = 0, seconds_median = 0;         ///< over the shooters, each one's fastest
     std::map<std::string, double> kernel_seconds = {};  ///< of a shot
     mp1map::Mp1Seconds mp1 = {};
 };
