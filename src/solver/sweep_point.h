@@ -66,8 +66,9 @@ struct SweepMeasurement {
     mp1map::Mp1Seconds mp1 = {};
 };
 
-/// Areas of the array that a shot visits. Block distribution (fig. 1.3) cuts the plane into one
-/// block a PE: as many lockstep steps as the rectangle has proxels in the block it fills most.
+/// Areas of the array that a shot visits. Block distribution (fig. 1.3) gives each PE one block of
+/// the plane; the control unit issues one address to all PEs, so there are as many lockstep steps
+/// as the rectangle covers places of a block.
 ShotAreas count_areas(const PlaneView& view, const SweepPoint& point, const mp1map::PeArray& array);
 
 /// What the cost model takes of such a shot, levels evenly shared.
