@@ -34,15 +34,35 @@ static float3 quad_point(const float3* corner, float s, float t) {
     return low + (high - low) * t;
 }
 
-// Centroid of the quad's part (s..s+step, t..t+step): that of its two triangles by their areas.
-static float3 quad_sample(const float3* corner, int part, int samples) {
-    const float step = 1.0f / samples;
-    const float s = (part % samples) * step, t = (part / samples) * step;
-    const float3 a = quad_point(corner, s, t), b = quad_point(corner, s + step, t),
-                 c = quad_point(corner, s + step, t + step), d = quad_point(corner, s, t + step);
+// Where a density that runs linearly from `low` at 0 to `high` at 1 has the share q below it.
+static float quantile(float low, float high, float q) {
+    const float root = sqrt(low * low + q * (high * high - low * low));
+    return low + root > 0.0f ? q * (low + high) / (low + root) : q;
+}
+
+// Centroid of a quad: that of its two triangles by their areas.
+static float3 quad_centroid(float3 a, float3 b, float3 c, float3 d) {
     const float lower = length(cross(b - a, c - a)), upper = length(cross(c - a, d - a));
     const float share = lower + upper > 0.0f ? lower / (lower + upper) : 0.5f;
     return ((a + c) + (b * share + d * (1.0f - share))) * (1.0f / 3.0f);
+}
+
+// Sample `part` of a quad: the centroid of one of samples^2 parts of equal area. The area of the
+// bilinear map's cells is linear in s and t, so rows and then cells end at quantiles of it.
+static float3 quad_sample(const float3* corner, int part, int samples) {
+    const float3 low = corner[1] - corner[0], high = corner[2] - corner[3];
+    const float3 left = corner[3] - corner[0], right = corner[2] - corner[1];
+    const float area00 = length(cross(low, left)), area10 = length(cross(low, right));
+    const float area01 = length(cross(high, left)), area11 = length(cross(high, right));
+    const int row = part / samples, column = part % samples;
+    const float t0 = quantile(area00 + area10, area01 + area11, (float)row / samples);
+    const float t1 = quantile(area00 + area10, area01 + area11, (float)(row + 1) / samples);
+    const float t = 0.5f * (t0 + t1);
+    const float at_left = mix(area00, area01, t), at_right = mix(area10, area11, t);
+    const float s0 = quantile(at_left, at_right, (float)column / samples);
+    const float s1 = quantile(at_left, at_right, (float)(column + 1) / samples);
+    return quad_centroid(quad_point(corner, s0, t0), quad_point(corner, s1, t0),
+                         quad_point(corner, s1, t1), quad_point(corner, s0, t1));
 }
 
 static void store_axis(float3 axis, __global float* to) {

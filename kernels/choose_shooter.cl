@@ -40,7 +40,7 @@ static void merge(__local BlockSummary* into, __local float* left, BlockSummary 
     for (int band = 0; band < BANDS; ++band) left[band] += other_left[band];
 }
 
-// band_weight is 1 / emitted flux, 0 for a dark band.
+// Fluxes are parts of what a band emits; band_weight is 0 for a dark band, else 1.
 static void aim_at(__global Shot* shot, BlockSummary best, const __local float* left,
                    const __global float* unshot, int stride, const __global float* band_weight,
                    float tolerance, __global float* shot_flux) {

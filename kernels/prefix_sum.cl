@@ -10,16 +10,16 @@ __kernel void prefix_sum(__global Shot* shot, __global int* values, int count, u
     const int share = running ? (count + PREFIX_PES - 1) / PREFIX_PES : 0;
     const int first = min(pe * share, count), end = min(first + share, count);
     uint sum = 0;
-    for (int i = first; i < end; ++i) sum += values[i];
+    for (int i = first; i < end; ++i) sum = add_sat(sum, (uint)values[i]);
     sums[pe] = sum;
     barrier(CLK_LOCAL_MEM_FENCE);
 
     uint before = 0;
-    for (int other = 0; other < pe; ++other) before += sums[other];
+    for (int other = 0; other < pe; ++other) before = add_sat(before, sums[other]);
     for (int i = first; i < end; ++i) {
         const int value = values[i];
         values[i] = before;
-        before += value;
+        before = add_sat(before, (uint)value);
     }
     if (running && pe == PREFIX_PES - 1) {
         shot->bin_entries = before;

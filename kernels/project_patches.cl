@@ -28,13 +28,18 @@ static void broadcast(const __global Projection* projections, const __global int
 #endif
 
 // One patch in one column of areas: each PE evaluates its proxels of the rows that the bounding
-// rectangle touches. A proxel is inside where no arc's value has its sign bit set.
+// rectangle touches. A proxel is inside where no arc's value has its sign bit set. Outside the
+// rectangle it never is: beyond a sharp corner the arcs' margins reach farther than the
+// rectangle's, and which proxels are evaluated there depends on the array.
 static void project(const __local Projection* patch, int tile, int area_column, int pe,
                     const __global real_v* roots, __local real_v* depth, __local int_v* owner,
                     Activity* activity) {
     const int column = proxel_column(tile, area_column, pe);
     if (column > last_of(patch->columns) || column + LANES <= first_of(patch->columns)) return;
-    const real_v u = to_real_v(centre_numerator(column + LANE_INDEX)) * (1.0f / RESOLUTION);
+    const int_v columns = column + LANE_INDEX;
+    const real_v u = to_real_v(centre_numerator(columns)) * (1.0f / RESOLUTION);
+    const int_v in_columns = at_least_v(columns, first_of(patch->columns)) &
+                             at_least_v((int_v)last_of(patch->columns), columns);
     const int first = first_area_row(patch->rows, tile, pe);
     const int last = last_area_row(patch->rows, tile, pe);
     const float v_first = row_centre(proxel_row(tile, first, pe));
@@ -44,8 +49,10 @@ static void project(const __local Projection* patch, int tile, int area_column, 
     real_v depth_linear = first_depth(patch->depth, u, v_first);
 
     for (int area_row = first; area_row <= last; ++area_row) {
+        const int row = proxel_row(tile, area_row, pe);
+        const int in_rows = row >= first_of(patch->rows) && row <= last_of(patch->rows) ? -1 : 0;
         const int at = plural_index(area_row * AREA_COLUMNS + area_column, pe);
-        const float v = row_centre(proxel_row(tile, area_row, pe));
+        const float v = row_centre(row);
         const real_v root = roots[at], nearest = depth[at];
         int_v outside = 0;
         UNROLLED for (int k = 0; k < CORNERS; ++k) {
@@ -53,7 +60,7 @@ static void project(const __local Projection* patch, int tile, int area_column, 
                 value_at(patch->edge[k][1], patch->edge[k][2], edge[k], v, root));
             edge[k] = next_linear(edge[k], patch->edge[k][1]);
         }
-        const int_v inside = ~(outside >> 31);
+        const int_v inside = ~(outside >> 31) & in_columns & in_rows;
         const real_v distance =
             value_at(patch->depth[1], patch->depth[2], depth_linear, v, root);
         depth_linear = next_linear(depth_linear, patch->depth[1]);

@@ -95,12 +95,13 @@ const Found& choose(const std::vector<Found>& found, const std::string& selector
 
     std::size_t index = 0;
     const auto* end = selector.data() + selector.size();
-    if (const auto parsed = std::from_chars(selector.data(), end, index);
-        parsed.ec == std::errc() && parsed.ptr == end && index < found.size())
-        return found[index];
+    const auto parsed = std::from_chars(selector.data(), end, index);
+    const bool is_index = parsed.ec == std::errc() && parsed.ptr == end;
+    if (is_index && index < found.size()) return found[index];
     for (const auto& one : found)
-        if (lower(one.summary.platform + " " + one.summary.name).find(lower(selector)) !=
-            std::string::npos)
+        if (!is_index &&
+            lower(one.summary.platform + " " + one.summary.name).find(lower(selector)) !=
+                std::string::npos)
             return one;
     throw NoSuchDevice("--device \"" + selector + "\": no such device; there is " +
                        names_of(found));

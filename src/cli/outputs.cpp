@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Viewers go by a file's ending. Devices and pipes have none.
+/// Viewers go by a file's ending, and no part of a scene has one of ours. Devices and pipes have
+/// none.
 void check_ending(std::string_view option, const fs::path& file, std::string_view ending) {
     if (file.extension() == ending || (fs::exists(file) && !fs::is_regular_file(file))) return;
     reject({option, file.native()}, "a name ending in " + std::string(ending));
@@ -55,6 +56,8 @@ std::vector<fs::path> output_files(const SolveOptions& options) {
 void check_outputs(const SolveOptions& options) {
     check_ending("--output", options.output, ".exr");
     if (options.preview) check_ending("--preview", *options.preview, ".png");
+    if (options.faces) check_ending("--faces", *options.faces, ".csv");
+    if (options.report) check_ending("--report", *options.report, ".json");
     check_distinct(options);
     for (const auto& file : output_files(options)) check_writable(file);
     if (options.report) check_writable(*options.report);

@@ -101,21 +101,16 @@ Outcome outcome_of(ProgressiveSolver& solver, const Work& work, const mp1map::De
     return outcome;
 }
 
-void announce(const Work& work, const SolveOptions& options, const ProgressiveSolver& solver,
-              const mp1map::Device& device) {
-    print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
-    if (!options.quiet)
-        print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
-}
-
 int solve(SolveOptions options) {
     const Stopwatch total;
     const auto work = prepare(options);
+    print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
     require_light(work);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_memory(work, options, device.summary());
     ProgressiveSolver solver(work.mesh, options.solver, device);
-    announce(work, options, solver, device);
+    if (!options.quiet)
+        print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
 
     const Interrupts interrupts;
     const Stopwatch solving;

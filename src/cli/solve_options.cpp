@@ -176,6 +176,7 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         result.emplace_back("--max-shots", std::to_string(solver.max_shots));
     if (std::isfinite(solver.time_limit))
         result.emplace_back("--time-limit", number_text(solver.time_limit));
+    if (options.pixels == PixelType::half) result.emplace_back("--half", "");
     if (solver.variants.incremental) result.emplace_back("--evaluate", "incremental");
     if (solver.variants.constant_distance) result.emplace_back("--distance", "constant");
     return result;

@@ -37,6 +37,9 @@ InputFile read_input_file(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(status)) {
         throw InputError(printable(path.string()) + ": is a folder, not a scene file");
     }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(printable(path.string()) + ": is not a regular file");
+    }
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream bytes;
     if (stream.peek() != std::ifstream::traits_type::eof()) bytes << stream.rdbuf();

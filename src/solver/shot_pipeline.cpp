@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "errors.h"
 #include "solver/kernel_source.h"
 
 namespace hemirad {
@@ -16,6 +17,7 @@ constexpr std::uint32_t kWidestLanes = 16;
 constexpr std::uint32_t kPrefixPes = 64, kReducePes = 64;
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
+constexpr std::uint32_t kMostListEntries = std::numeric_limits<std::int32_t>::max();
 
 std::uint32_t quotient_up(std::uint64_t value, std::uint64_t divisor) {
     return static_cast<std::uint32_t>((value + divisor - 1) / divisor);
@@ -55,6 +57,16 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            flag("ACCUMULATE_XNET", settings.variants.xnet) +
            flag("COUNT_ACTIVITY", settings.count_activity) +
            flag("KEEP_OWNERS", settings.keep_owners);
+}
+
+// Counts are signed 32-bit integers on the device.
+std::uint64_t countable_proxels(std::uint32_t resolution, std::uint32_t samples) {
+    const std::uint64_t proxels = disk_proxel_count(resolution) * samples * samples;
+    if (proxels > std::numeric_limits<std::int32_t>::max())
+        throw InputError("--resolution " + std::to_string(resolution) + " with --shooter-samples " +
+                         std::to_string(samples) + ": " + std::to_string(proxels) +
+                         " proxels a shot; at most 2147483647 can be counted");
+    return proxels;
 }
 
 device::Shot first_shot() {
@@ -119,7 +131,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       tile_count_(count_tiles(resolution_, array_)),
       stack_count_(array_.array_count * array_.pe_count()),
       depth_(stack_depth(stride_, stack_count_)),
-      disk_proxels_(disk_proxel_count(resolution_) * samples_ * samples_),
+      disk_proxels_(countable_proxels(resolution_, samples_)),
       tolerance_(static_cast<float>(settings.tolerance)),
       per_proxel_(static_cast<float>(1.0 / static_cast<double>(disk_proxels_))) {
     build_kernels(device, settings, patches.corner_count);
@@ -225,7 +237,12 @@ void ShotPipeline::set_shot(const device::Shot& shot) {
 
 void ShotPipeline::enlarge_lists() {
     device::Shot halted = shot();
-    lists_ = acu_.plural<std::int32_t>(std::size_t{halted.bin_entries} * 3 / 2);
+    if (halted.bin_entries > kMostListEntries)
+        throw mp1map::DeviceError("a shot needs lists of " + std::to_string(halted.bin_entries) +
+                                  " patches; at most " + std::to_string(kMostListEntries) +
+                                  " can be addressed: raise --patch-size or lower --resolution");
+    lists_ = acu_.plural<std::int32_t>(
+        std::min<std::size_t>(std::size_t{halted.bin_entries} * 3 / 2, kMostListEntries));
     acu_.clear(proxel_count_);
     halted.status = kRunning;
     set_shot(halted);

@@ -48,7 +48,7 @@ struct PatchLight {
     std::size_t band_count = 1;
     std::vector<float> emitted;
     std::vector<float> reflectance;
-    std::vector<float> band_weight;  ///< [band] 1 / emitted flux, 0 for a dark band
+    std::vector<float> band_weight;  ///< [band] 1, or 0 for a dark band
 };
 
 /// The kernels of a shot and the plural variables they work on: one method a kernel, of its name.

@@ -60,6 +60,7 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
       plan_(plan_bands(mesh)),
       pipeline_(pipeline_for(mesh, plan_, settings, device)) {
     pipeline_.init_plane();
+    // A shot at nothing: adds up the emitted flux and finds the first shooter.
     pipeline_.update_radiosity();
     pipeline_.choose_shooter();
 }

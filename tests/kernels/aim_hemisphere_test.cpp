@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <glm/vec2.hpp>
 
 #include <glm/geometric.hpp>
 
@@ -10,6 +12,7 @@
 namespace hemirad::test {
 namespace {
 
+using glm::dvec2;
 using glm::dvec3;
 
 // Coordinates are below 1 in magnitude; a sample is an average of averages of them, less than 16
@@ -67,18 +70,49 @@ Part triangle_part(dvec3 a, dvec3 b, dvec3 c) {
     return {glm::length(glm::cross(b - a, c - a)) / 2, (a + b + c) / 3.0};
 }
 
-// The part [i, i+1] x [j, j+1] / samples of a quad, as the two triangles it is made of.
-Part quad_part(const PatchArrays& arrays, int patch, int samples, int part) {
-    const auto point = [&](int i, int j) {
-        const double s = double(i) / samples, t = double(j) / samples;
+// A quad between four parameters of its bilinear map, as the two triangles it is made of.
+Part quad_part(const PatchArrays& arrays, int patch, dvec2 least, dvec2 most) {
+    const auto point = [&](double s, double t) {
         return (1 - t) * ((1 - s) * corner(arrays, patch, 0) + s * corner(arrays, patch, 1)) +
                t * ((1 - s) * corner(arrays, patch, 3) + s * corner(arrays, patch, 2));
     };
-    const int i = part % samples, j = part / samples;
-    const auto low = triangle_part(point(i, j), point(i + 1, j), point(i + 1, j + 1));
-    const auto high = triangle_part(point(i, j), point(i + 1, j + 1), point(i, j + 1));
+    const auto a = point(least.x, least.y), b = point(most.x, least.y), c = point(most.x, most.y),
+               d = point(least.x, most.y);
+    const auto low = triangle_part(a, b, c), high = triangle_part(a, c, d);
     const double area = low.area + high.area;
     return {area, (low.area * low.centroid + high.area * high.centroid) / area};
+}
+
+// By bisection, where `area` of the part below a parameter reaches `wanted`.
+double parameter_of(const std::function<double(double)>& area, double wanted) {
+    double low = 0, high = 1;
+    for (int step = 0; step < 60; ++step) {
+        const double middle = (low + high) / 2;
+        (area(middle) < wanted ? low : high) = middle;
+    }
+    return low;
+}
+
+// Part `part` of samples x samples of equal area: rows of equal area, cut into equal cells.
+Part equal_part(const PatchArrays& arrays, int patch, int samples, int part) {
+    const double whole = quad_part(arrays, patch, {0, 0}, {1, 1}).area;
+    const auto row_end = [&](int row) {
+        return parameter_of(
+            [&](double t) {
+                return quad_part(arrays, patch, {0, 0}, {1, t}).area;
+            },
+            whole * row / samples);
+    };
+    const double t0 = row_end(part / samples), t1 = row_end(part / samples + 1);
+    const auto cell_end = [&](int column) {
+        return parameter_of(
+            [&](double s) {
+                return quad_part(arrays, patch, {0, t0}, {s, t1}).area;
+            },
+            whole / samples * column / samples);
+    };
+    return quad_part(arrays, patch, {cell_end(part % samples), t0},
+                     {cell_end(part % samples + 1), t1});
 }
 
 // Centroids of the congruent triangles of a triangle cut into samples rows from corner a.
@@ -104,7 +138,7 @@ bool repeats_corner(const PatchArrays& arrays, int patch) {
     return corner(arrays, patch, 3) == corner(arrays, patch, 2);
 }
 
-TEST(AimHemisphere, OriginIsTheCentroidOfThatPartOfAQuad) {
+TEST(AimHemisphere, OriginIsTheCentroidOfOneOfTheEqualPartsOfAQuad) {
     const auto arrays = random_patches(20, 4, 3);
     AimHemisphere aim(arrays);
 
@@ -112,7 +146,7 @@ TEST(AimHemisphere, OriginIsTheCentroidOfThatPartOfAQuad) {
         for (int patch = 0; patch < 20; ++patch)
             for (int part = 0; part < samples * samples; ++part) {
                 if (repeats_corner(arrays, patch)) continue;
-                const auto expected = quad_part(arrays, patch, samples, part);
+                const auto expected = equal_part(arrays, patch, samples, part);
                 const auto origin = aim(patch, samples, part).origin;
                 // A part's own area decides how well the share of its two triangles is known.
                 const double bound = kBound * std::max(1.0, 1e-3 / expected.area);
@@ -153,8 +187,8 @@ TEST(AimHemisphere, TheFrameIsRightHandedAndTurnedAgainstTheFirstEdgeByTheGolden
         EXPECT_NEAR(glm::length(frame.u_axis), 1, 4 * 0x1p-24);
         // Corners are rounded to half an ulp of 1; a short edge turns by as much more.
         const auto along = glm::normalize(edge);
-        const double slope = glm::dot(frame.u_axis, glm::cross(frame.normal, along)) /
-                             glm::dot(frame.u_axis, along);
+        const double slope =
+            glm::dot(frame.u_axis, glm::cross(frame.normal, along)) / glm::dot(frame.u_axis, along);
         EXPECT_NEAR(slope, (std::sqrt(5.0) - 1) / 2, 1e-5);
     }
 }

@@ -91,5 +91,30 @@ TEST_P(ProjectPatches, OwnersAgreeWithTheScalarReference) {
     EXPECT_LT(undecided, 100u);
 }
 
+// Far smaller than a proxel's distance to the margins of their arcs, which overshoot at sharp
+// corners: what an array evaluates beyond a bounding rectangle must not count.
+TEST(OwnersOfTinyPatches, AreTheSameForEveryArray) {
+    auto polygons = box({1, 1, 1}, 1);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> inside(-1, 1);
+    const auto point = [&] { return glm::dvec3(inside(random), inside(random), inside(random)); };
+    for (int i = 0; i < 3000; ++i) {
+        const auto centre = glm::dvec3(-0.97, 0, 0) + 0.02 * point();
+        const auto a = centre + 5e-4 * point(), b = centre + 5e-4 * point();
+        polygons.push_back({{centre, a, b, b}});
+    }
+    std::vector<int> first;
+    for (const auto& shape : shapes()) {
+        Aimed aimed(polygons, shape, 512);
+        aimed.aim(0);
+        aimed.project();
+
+        const auto owners = aimed.owners();
+
+        if (first.empty()) first = owners;
+        EXPECT_TRUE(owners == first) << shape;
+    }
+}
+
 }  // namespace
 }  // namespace hemirad::test
