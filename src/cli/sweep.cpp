@@ -1,5 +1,6 @@
 #include "cli/sweep.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -95,7 +96,7 @@ class Remaining {
         left_ -= weight;
         done_ += weight;
         const auto passed = std::chrono::steady_clock::now() - start_;
-        return std::chrono::duration<double>(passed).count() / done_ * left_;
+        return std::chrono::duration<double>(passed).count() / done_ * std::max(left_, 0.0);
     }
     void skip(double weight) { left_ -= weight; }
 
