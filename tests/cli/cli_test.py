@@ -250,10 +250,12 @@ class BadOutputs(CommandLine):
         (self.folder / "taken.exr").mkdir()
         self.assert_refused(self.solve("-o", "taken.exr"), "taken.exr: ", exit_code=3)
 
-    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
     def test_folder_without_write_permission(self):
         (self.folder / "shut").mkdir(mode=0o555)
-        self.assert_refused(self.solve("-o", "shut/a.exr"), "shut/a.exr: ", exit_code=3)
+        self.folder.chmod(0o755)
+        somebody = {"user": 65534} if os.geteuid() == 0 else {}  # root may write everywhere
+        self.assert_refused(self.solve("-o", "shut/a.exr", **somebody), "shut/a.exr: ",
+                            exit_code=3)
 
     def test_full_disk(self):
         result = self.solve("-o", "/dev/full")
@@ -279,12 +281,27 @@ class BadOutputs(CommandLine):
         self.assert_refused(self.solve("-o", "a.png"), 'hemirad: --output "a.png": ')
         self.assert_refused(self.solve("--preview", "a.exr"), 'hemirad: --preview "a.exr": ')
 
+    def test_names_of_results_with_an_unfitting_ending(self):
+        self.assert_refused(self.solve("--faces", "scene.mtl"), 'hemirad: --faces "scene.mtl": ')
+        self.assert_refused(self.solve("--report", "scene.obj"),
+                            'hemirad: --report "scene.obj": ')
+
     def test_two_outputs_in_one_file(self):
-        self.assert_refused(self.solve("--faces", "a", "--report", "./a"), "hemirad: ./a: ")
+        self.write("a.txt", "older")
+        for name in ("a.csv", "a.json"):
+            (self.folder / name).symlink_to("a.txt")
+        result = self.solve("--faces", "a.csv", "--report", "./a.json")
+        for name in ("a.csv", "a.json"):
+            (self.folder / name).unlink()
+        self.assert_refused(result, "hemirad: ./a.json: ")
+        self.assertEqual("older", (self.folder / "a.txt").read_text())
 
     def test_output_over_the_scene(self):
         before = (self.folder / "scene.obj").read_bytes()
-        self.assert_refused(self.solve("--faces", "scene.obj"), "hemirad: scene.obj: ")
+        (self.folder / "a.csv").symlink_to("scene.obj")
+        result = self.solve("--faces", "a.csv")
+        (self.folder / "a.csv").unlink()
+        self.assert_refused(result, "hemirad: a.csv: ")
         self.assertEqual(before, (self.folder / "scene.obj").read_bytes())
 
 
