@@ -1,5 +1,8 @@
 #include "cli/outputs.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "errors.h"
 #include "lightmap/atomic_file.h"
 #include "lightmap/rasterize.h"
@@ -37,6 +40,13 @@ void check_distinct(const SolveOptions& options) {
     }
 }
 
+/// Emission may be up to what a double holds, a lightmap only what a float does.
+void check_finite(const fs::path& file, const Lightmap& lightmap) {
+    for (const auto& values : lightmap.values)
+        if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+            throw OutputError(printable(file.string()) + ": values are beyond the range of float");
+}
+
 std::string settings_text(const SolveOptions& options) {
     std::string text;
     for (const auto& [name, value] : deciding_options(options))
@@ -66,6 +76,7 @@ void check_outputs(const SolveOptions& options) {
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution) {
     const auto lightmap = rasterize(mesh, solution, layout, options.quantity);
+    check_finite(options.output, lightmap);
     auto attributes = describe(solution, options.quantity);
     attributes.push_back({"version", std::string(HEMIRAD_VERSION)});
     attributes.push_back({"scene", options.scene.filename().string()});

@@ -113,6 +113,12 @@ std::string seconds_text(const std::map<std::string, double>& seconds, const std
     return number_text(found == seconds.end() ? 0 : found->second);
 }
 
+std::string levels_text(const std::vector<double>& fill) {
+    std::string text;
+    for (const double level : fill) text += (text.empty() ? "" : ";") + number_text(level);
+    return text;
+}
+
 std::vector<std::string> measured_fields(const SweepMeasurement& measured,
                                          const std::string& wrong_per_million) {
     const auto ratio = [](double a, double b) { return number_text(b > 0 ? a / b : 0); };
@@ -120,7 +126,7 @@ std::vector<std::string> measured_fields(const SweepMeasurement& measured,
     std::vector<std::string> fields{number_text(measured.visible),
                                     number_text(measured.projected),
                                     number_text(measured.stack_levels),
-                                    number_text(measured.stack_fill),
+                                    levels_text(measured.stack_fill),
                                     number_text(measured.tile_patches),
                                     number_text(measured.areas),
                                     ratio(measured.areas, measured.projected),
@@ -196,12 +202,15 @@ std::string title(const SweepRow& row) {
 }
 
 SweepCsv::SweepCsv(const std::filesystem::path& file) : file_(file) {
+    check_writable(file);
+    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+        throw OutputError(printable(file.string()) +
+                          ": is not a regular file; a sweep has to be read again to go on");
     const auto lines = whole_lines(file);
     const std::size_t column_count = fields_of(header()).size();
     if (!lines.empty() && lines.front() != header())
         throw InputError(printable(file.string()) + ": is no sweep of this version; move it away");
-    if (lines.empty() && std::filesystem::exists(file) && std::filesystem::file_size(file) > 0 &&
-        std::filesystem::is_regular_file(file))
+    if (lines.empty() && std::filesystem::exists(file) && std::filesystem::file_size(file) > 0)
         throw InputError(printable(file.string()) + ": is no sweep; move it away");
     std::string kept = header() + "\n";
     for (std::size_t i = 1; i < lines.size(); ++i) {

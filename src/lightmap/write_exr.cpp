@@ -108,13 +108,6 @@ std::vector<half> halves(const std::string& file, const std::string& channel,
     return rounded;
 }
 
-void check_finite(const std::string& file, const std::string& channel,
-                  const std::vector<float>& values) {
-    if (std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }))
-        return;
-    throw OutputError(file + ": channel " + channel + ": values are beyond the range of float");
-}
-
 /// OpenEXR reads from the slices of a file it writes, but takes them as char*.
 template <typename T>
 Imf::Slice slice_of(const std::vector<T>& texels, std::uint32_t width, Imf::PixelType type) {
@@ -132,7 +125,6 @@ Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type
     Frame frame;
     const auto add = [&](const std::string& channel, const std::vector<float>& values) {
         if (type == PixelType::float32) {
-            check_finite(file, channel, values);
             frame.buffer.insert(channel, slice_of(values, lightmap.width, Imf::FLOAT));
             return;
         }

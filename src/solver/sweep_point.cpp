@@ -69,7 +69,8 @@ mp1map::ProxelRange range_of(std::uint32_t first_and_last) {
 PlaneView view_of(ShotPipeline& pipeline) {
     PlaneView view;
     for (const auto& projection : pipeline.projections())
-        view.visible.push_back({range_of(projection.columns), range_of(projection.rows)});
+        view.visible.push_back({range_of(projection.columns), range_of(projection.rows),
+                                static_cast<std::uint32_t>(projection.patch)});
     view.useful_proxels = pipeline.activity().useful_proxels;
     return view;
 }
@@ -121,14 +122,12 @@ class ShotTimes {
     std::vector<double> seconds_;
 };
 
-void add_stacks(SweepMeasurement& sum, const std::vector<std::int32_t>& heights) {
-    std::int64_t filled = 0;
-    for (const std::int32_t height : heights) filled += height;
-    const std::int32_t levels = *std::max_element(heights.begin(), heights.end());
-    sum.stack_levels += levels;
-    if (levels > 0)
-        sum.stack_fill +=
-            static_cast<double>(filled) / (double(levels) * static_cast<double>(heights.size()));
+void add_stacks(SweepMeasurement& sum, const std::vector<std::uint32_t>& levels,
+                std::uint32_t pe_count) {
+    sum.stack_levels += static_cast<double>(levels.size());
+    if (sum.stack_fill.size() < levels.size()) sum.stack_fill.resize(levels.size());
+    for (std::size_t level = 0; level < levels.size(); ++level)
+        sum.stack_fill[level] += static_cast<double>(levels[level]) / pe_count;
 }
 
 void add_areas(SweepMeasurement& sum, const ShotAreas& shot) {
@@ -153,10 +152,11 @@ void add_mp1(mp1map::Mp1Seconds& sum, const mp1map::Mp1Seconds& shot) {
 void divide(SweepMeasurement& sums, double shots) {
     auto& mp1 = sums.mp1;
     for (double* const sum :
-         {&sums.visible, &sums.projected, &sums.stack_levels, &sums.stack_fill, &sums.tile_patches,
-          &sums.areas, &sums.useful, &mp1.cull, &mp1.set_up, &mp1.diffusion, &mp1.inside_tests,
-          &mp1.depth, &mp1.accumulate, &mp1.update, &mp1.choose})
+         {&sums.visible, &sums.projected, &sums.stack_levels, &sums.tile_patches, &sums.areas,
+          &sums.useful, &mp1.cull, &mp1.set_up, &mp1.diffusion, &mp1.inside_tests, &mp1.depth,
+          &mp1.accumulate, &mp1.update, &mp1.choose})
         *sum /= shots;
+    for (double& fill : sums.stack_fill) fill /= shots;
 }
 
 // Timed kernels in a run of their own: events would count into the time of a shot.
@@ -214,6 +214,16 @@ ShotAreas count_areas(const PlaneView& view, const SweepPoint& point,
     return shot;
 }
 
+std::vector<std::uint32_t> stack_levels(const PlaneView& view, std::uint32_t pe_count) {
+    std::vector<std::uint32_t> height(pe_count), levels;
+    for (const auto& rectangle : view.visible) {
+        const std::uint32_t level = height[rectangle.patch % pe_count]++;
+        if (level == levels.size()) levels.push_back(0);
+        ++levels[level];
+    }
+    return levels;
+}
+
 mp1map::ShotCounts mp1_counts(const ShotAreas& shot, const SweepPoint& point,
                               const PatchArrays& patches) {
     mp1map::ShotCounts counts;
@@ -240,7 +250,8 @@ SweepMeasurement measure(SweepScene& scene, const SweepPoint& point, const mp1ma
     std::vector<double> seconds;
     for (std::size_t i = 0; i < views.size(); ++i) {
         seconds.push_back(seconds_of(pipeline, scene.shooters()[i]));
-        add_stacks(result, pipeline.stack_heights());
+        const std::uint32_t pes = point.mp1_width * point.mp1_height;
+        add_stacks(result, stack_levels(views[i], pes), pes);
         const auto areas = count_areas(views[i], point, result.pe_array);
         add_areas(result, areas);
         add_mp1(result.mp1, mp1map::seconds(mp1_counts(areas, point, scene.patches()), mp1));

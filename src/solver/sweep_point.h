@@ -27,6 +27,7 @@ struct SweepPoint {
 struct PlaneView {
     struct Rectangle {
         mp1map::ProxelRange columns, rows;
+        std::uint32_t patch = 0;
     };
     std::vector<Rectangle> visible;  ///< empty ones, too small for a proxel's centre, included
     std::uint64_t useful_proxels = 0;
@@ -57,8 +58,8 @@ class SweepScene {
 struct SweepMeasurement {
     mp1map::PeArray pe_array;
     double visible = 0, projected = 0;  ///< patches
-    double stack_levels = 0;            ///< of the highest stack
-    double stack_fill = 0;              ///< visible patches over slots up to that level
+    double stack_levels = 0;            ///< of the highest stack, patches dealt out in turn
+    std::vector<double> stack_fill;     ///< [level] part of the PEs that hold a visible patch there
     double tile_patches = 0;            ///< that the arrays took, those of several tiles anew
     double areas = 0, useful = 0;       ///< visited areas; proxels inside, summed over them
     double seconds_min = 0, seconds_median = 0;         ///< over the shooters, each one's fastest
@@ -70,6 +71,10 @@ struct SweepMeasurement {
 /// the plane; the control unit issues one address to all PEs, so there are as many lockstep steps
 /// as the rectangle covers places of a block.
 ShotAreas count_areas(const PlaneView& view, const SweepPoint& point, const mp1map::PeArray& array);
+
+/// Stack heights of the MP-1's PEs, patch p on PE p modulo their number: how many PEs hold a
+/// visible patch on each level (sec. 1.5.1).
+std::vector<std::uint32_t> stack_levels(const PlaneView& view, std::uint32_t pe_count);
 
 /// What the cost model takes of such a shot, levels evenly shared.
 mp1map::ShotCounts mp1_counts(const ShotAreas& shot, const SweepPoint& point,

@@ -59,6 +59,13 @@ Sums sums_of(Hall hall, const SweepPoint& point) {
     return sums;
 }
 
+TEST(Stacks, HoldVisiblePatchesOnTopLevelByLevel) {
+    PlaneView view;
+    for (const std::uint32_t patch : {0u, 4u, 5u}) view.visible.push_back({{}, {}, patch});
+
+    EXPECT_EQ(stack_levels(view, 4), (std::vector<std::uint32_t>{2, 1}));
+}
+
 /// The device's own counters on 32x32 PEs whose tile is one area.
 TEST(PaperStatements, AreasCountedFromRectanglesAreThoseTheArrayVisits) {
     auto& scene = scene_of(Hall::small);
