@@ -160,12 +160,21 @@ bool is_number(const std::string& text) {
     return !text.empty() && *end == '\0' && std::isfinite(number) && number >= 0;
 }
 
+/// One number, or one a stack level.
+bool are_numbers(const std::string& field) {
+    std::stringstream levels(field);
+    bool any = false;
+    for (std::string level; std::getline(levels, level, ';'); any = true)
+        if (!is_number(level)) return false;
+    return any;
+}
+
 void check_row(const std::string& line, const std::vector<std::string>& columns) {
     const auto fields = fields_of(line);
     if (fields.size() != columns.size()) throw std::logic_error("sweep: a row of another length");
     for (std::size_t i = kFirstMeasured; i < fields.size(); ++i) {
         if (columns[i] == "wrong_per_million" && fields[i].empty()) continue;
-        if (!is_number(fields[i]))
+        if (!are_numbers(fields[i]))
             throw std::logic_error("sweep: " + columns[i] + " is \"" + fields[i] + "\"");
     }
 }
