@@ -69,6 +69,10 @@ class BadScenes(CommandLine):
         (self.folder / "folder.obj").mkdir()
         self.assert_scene_refused("folder.obj", None)
 
+    def test_device_without_end(self):
+        (self.folder / "zero.obj").symlink_to("/dev/zero")
+        self.assert_scene_refused("zero.obj", None, says="not a regular file")
+
     def test_empty_file(self):
         for name in ("empty.obj", "empty.gltf", "empty.glb"):
             self.assert_scene_refused(name, b"")
@@ -238,6 +242,18 @@ class BadOptions(CommandLine):
             with self.subTest(arguments=arguments):
                 self.assert_refused(self.run_hemirad(*arguments), "hemirad: ", says=says)
 
+    def test_more_proxels_than_can_be_counted(self):
+        self.assert_refused_at_once("--resolution", "8192", "--shooter-samples", "16")
+
+    def test_an_index_is_no_part_of_a_name(self):
+        self.assert_refused_at_once("--device", "512")
+
+    def assert_refused_at_once(self, *arguments):
+        result = self.solve(*arguments)
+        self.assertEqual(1, result.returncode, result.stderr)
+        self.assertIn(arguments[0], result.stderr.splitlines()[-1])
+        self.assertFalse((self.folder / "scene.exr").exists())
+
 
 class BadOutputs(CommandLine):
     def test_folder_that_does_not_exist(self):
@@ -276,6 +292,12 @@ class BadOutputs(CommandLine):
         self.write("broken.obj", "not a scene")
         self.assert_refused(self.solve("-o", "no/a.exr", scene="broken.obj"), "no/a.exr: ",
                             exit_code=3)
+
+    def test_light_beyond_what_a_float_holds(self):
+        self.write("scene.mtl", scenes.MATERIALS.replace("Ke", "Ke 1e200 1e200 1e200 #"))
+        result = self.solve("-o", "a.exr")
+        self.assert_refused_after_start(result, "a.exr: values are beyond the range of float")
+        self.assertFalse((self.folder / "a.exr").exists())
 
     def test_names_with_an_unfitting_ending(self):
         self.assert_refused(self.solve("-o", "a.png"), 'hemirad: --output "a.png": ')
