@@ -8,25 +8,12 @@
 
 #include "scene/mesh.h"
 #include "scene/read_scene.h"
-#include "solver/bands.h"
-#include "solver/shot_pipeline.h"
+#include "solver/solver.h"
 
 namespace hemirad {
 namespace {
 
 constexpr std::uint32_t kShooters = 64;  // spread evenly over the patches
-
-PatchLight even_light(const PatchArrays& patches) {
-    PatchLight light;
-    light.emitted.assign(patches.stride, 0.0f);
-    light.reflectance.assign(patches.stride, 0.0f);
-    for (std::uint32_t i = 0; i < patches.patch_count; ++i) {
-        light.emitted[i] = 1.0f / static_cast<float>(patches.patch_count);
-        light.reflectance[i] = 0.5f;
-    }
-    light.band_weight = {1.0f};
-    return light;
-}
 
 ShotPipeline pipeline_for(const PatchArrays& patches, std::uint32_t resolution, bool timed) {
     PipelineSettings settings;
@@ -37,19 +24,9 @@ ShotPipeline pipeline_for(const PatchArrays& patches, std::uint32_t resolution, 
     return pipeline;
 }
 
-device::Shot shoot(ShotPipeline& pipeline, std::uint32_t patch) {
-    device::Shot shot = pipeline.shot();
-    shot.patch = static_cast<std::int32_t>(patch);
-    pipeline.set_shot(shot);
-    pipeline.aim_hemisphere(0);
-    pipeline.cull_patches();
-    pipeline.set_up_projection();
-    pipeline.count_areas();
-    pipeline.prefix_sum();
-    pipeline.bin_areas();
-    pipeline.project_patches();
-    pipeline.update_radiosity();
-    pipeline.choose_shooter();
+device::Shot shoot_from(ShotPipeline& pipeline, std::uint32_t patch) {
+    pipeline.set_shooter(patch);
+    shoot(pipeline, 1);
     return pipeline.shot();
 }
 
@@ -57,22 +34,19 @@ void run_shots(benchmark::State& state, const PatchArrays& patches) {
     const auto resolution = static_cast<std::uint32_t>(state.range(0));
     ShotPipeline pipeline = pipeline_for(patches, resolution, false);
     std::uint32_t shooter = 0;
-    const auto next = [&] {
-        return shooter++ % kShooters * (patches.patch_count / kShooters);
-    };
-    for (int warm_up = 0; warm_up < 8; ++warm_up) shoot(pipeline, next());
-    for (auto _ : state) benchmark::DoNotOptimize(shoot(pipeline, next()));
+    const auto next = [&] { return shooter++ % kShooters * (patches.patch_count / kShooters); };
+    for (int warm_up = 0; warm_up < 8; ++warm_up) shoot_from(pipeline, next());
+    for (auto _ : state) benchmark::DoNotOptimize(shoot_from(pipeline, next()));
 
     ShotPipeline timed = pipeline_for(patches, resolution, true);
-    for (std::uint32_t i = 0; i < kShooters; ++i) shoot(timed, next());
+    for (std::uint32_t i = 0; i < kShooters; ++i) shoot_from(timed, next());
     for (const auto& [name, cost] : timed.acu().kernel_seconds())
         if (name != "init_plane") state.counters[name + "_ms"] = 1e3 * cost.first / kShooters;
     state.counters["bytes_per_patch"] =
         static_cast<double>(pipeline.device_bytes() - 4 * resolution * resolution) /
         patches.patch_count;
-    state.counters["proxels/s"] =
-        benchmark::Counter(static_cast<double>(pipeline.disk_proxels()),
-                           benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["proxels/s"] = benchmark::Counter(static_cast<double>(pipeline.disk_proxels()),
+                                                     benchmark::Counter::kIsIterationInvariantRate);
 }
 
 }  // namespace
@@ -89,8 +63,11 @@ int main(int argc, char** argv) {
     const auto mesh = hemirad::build_mesh(hemirad::read_scene(argv[1]), settings);
     const auto patches = hemirad::patch_arrays(mesh);
     std::fprintf(stderr, "%s: %u patches\n", argv[1], patches.patch_count);
-    benchmark::RegisterBenchmark("shot", [&](benchmark::State& state) {
-        hemirad::run_shots(state, patches);
-    })->RangeMultiplier(2)->Range(128, 2048)->UseRealTime()->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(
+        "shot", [&](benchmark::State& state) { hemirad::run_shots(state, patches); })
+        ->RangeMultiplier(2)
+        ->Range(128, 2048)
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
     benchmark::RunSpecifiedBenchmarks();
 }

@@ -87,6 +87,17 @@ const std::vector<std::string>& kernel_names() {
     return names;
 }
 
+PatchLight even_light(const PatchArrays& patches, float reflectance) {
+    PatchLight light;
+    light.emitted.assign(patches.stride, 0.0f);
+    light.reflectance.assign(patches.stride, 0.0f);
+    std::fill_n(light.emitted.begin(), patches.patch_count,
+                1.0f / static_cast<float>(patches.patch_count));
+    std::fill_n(light.reflectance.begin(), patches.patch_count, reflectance);
+    light.band_weight = {1.0f};
+    return light;
+}
+
 std::uint64_t disk_proxel_count(std::uint32_t resolution) {
     const std::int64_t n = resolution;
     std::uint64_t count = 0;
@@ -235,6 +246,13 @@ void ShotPipeline::set_shot(const device::Shot& shot) {
     acu_.load(shot_, std::span<const device::Shot>(&shot, 1));
 }
 
+void ShotPipeline::set_shooter(std::uint32_t patch) {
+    device::Shot next = shot();
+    next.patch = static_cast<std::int32_t>(patch);
+    next.status = kRunning;
+    set_shot(next);
+}
+
 void ShotPipeline::enlarge_lists() {
     device::Shot halted = shot();
     if (halted.bin_entries > kMostListEntries)
@@ -272,8 +290,6 @@ Activity ShotPipeline::activity() {
     acu_.clear(activity_);
     return {totals[kUsefulProxels], totals[kVisitedAreas], totals[kTilePatches]};
 }
-
-std::vector<std::int32_t> ShotPipeline::stack_heights() { return acu_.unload(stack_height_); }
 
 std::vector<std::int32_t> ShotPipeline::owners() {
     const auto plural = acu_.unload(owners_);

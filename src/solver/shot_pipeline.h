@@ -51,6 +51,9 @@ struct PatchLight {
     std::vector<float> band_weight;  ///< [band] 1, or 0 for a dark band
 };
 
+/// One band in which every patch emits and reflects alike: for measurements and tests.
+PatchLight even_light(const PatchArrays& patches, float reflectance = 0.5f);
+
 /// The kernels of a shot and the plural variables they work on: one method a kernel, of its name.
 /// What a shooter sees and what becomes of its flux stays on the device.
 class ShotPipeline {
@@ -72,6 +75,7 @@ class ShotPipeline {
     /// Waits; how far the device has come.
     device::Shot shot();
     void set_shot(const device::Shot& shot);
+    void set_shooter(std::uint32_t patch);  ///< instead of the most energetic one
     /// After kBinsFull: makes room for the lists and lets the halted shot be repeated.
     void enlarge_lists();
 
@@ -83,7 +87,6 @@ class ShotPipeline {
     std::vector<std::int32_t> owners();
     std::int32_t escaped_owner() const { return static_cast<std::int32_t>(stride_); }
     Activity activity();                        ///< since the last call; count_activity
-    std::vector<std::int32_t> stack_heights();  ///< visible patches of each PE, of the last shot
     std::vector<device::Projection> projections();  ///< of the last shot, in patch order
 
     std::uint64_t disk_proxels() const { return disk_proxels_; }

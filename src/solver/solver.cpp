@@ -65,26 +65,28 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
     pipeline_.choose_shooter();
 }
 
-// One pass of the loop at the end of sec. 1.5.4. Its inner loops, over the levels of the stacks
-// and their patches, run inside the kernels.
-void ProgressiveSolver::shoot() {
-    const std::uint32_t parts = settings_.shooter_samples * settings_.shooter_samples;
-    for (std::uint32_t part = 0; part < parts; ++part) {
-        pipeline_.aim_hemisphere(part);
-        pipeline_.cull_patches();
-        pipeline_.set_up_projection();
-        pipeline_.count_areas();
-        pipeline_.prefix_sum();
-        pipeline_.bin_areas();
-        pipeline_.project_patches();
-    }
-    pipeline_.update_radiosity();
-    pipeline_.choose_shooter();
+// The inner loops of sec. 1.5.4, over the levels of the stacks and their patches, run inside the
+// kernels.
+void project_hemisphere(ShotPipeline& pipeline, std::uint32_t part) {
+    pipeline.aim_hemisphere(part);
+    pipeline.cull_patches();
+    pipeline.set_up_projection();
+    pipeline.count_areas();
+    pipeline.prefix_sum();
+    pipeline.bin_areas();
+    pipeline.project_patches();
+}
+
+void shoot(ShotPipeline& pipeline, std::uint32_t samples) {
+    for (std::uint32_t part = 0; part < samples * samples; ++part)
+        project_hemisphere(pipeline, part);
+    pipeline.update_radiosity();
+    pipeline.choose_shooter();
 }
 
 // Makes `shots` more shots, fewer where the device finds that it is done: the rest then do nothing.
 Progress ProgressiveSolver::advance(std::uint64_t shots) {
-    for (std::uint64_t i = 0; i < shots; ++i) shoot();
+    for (std::uint64_t i = 0; i < shots; ++i) shoot(pipeline_, settings_.shooter_samples);
     device::Shot state = pipeline_.shot();
     if (state.status == kBinsFull) {
         pipeline_.enlarge_lists();

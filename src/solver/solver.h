@@ -39,6 +39,13 @@ struct Progress {
     double seconds = 0;  ///< since solve() began
 };
 
+/// What one of a shot's hemispheres sees is counted, on the `part`-th of its places.
+void project_hemisphere(ShotPipeline& pipeline, std::uint32_t part);
+
+/// One pass of the loop of sec. 1.5.4, from samples x samples hemispheres, for the shooter that the
+/// pipeline has chosen.
+void shoot(ShotPipeline& pipeline, std::uint32_t samples);
+
 enum class Stop { converged, max_shots, time_limit, interrupted };
 
 /// Proxels that a shot's patches own and that escape, over those in the disk; both 1.
@@ -68,7 +75,6 @@ class ProgressiveSolver {
     std::map<std::string, std::pair<double, std::uint64_t>> kernel_seconds();
 
   private:
-    void shoot();
     Progress advance(std::uint64_t shots);
 
     const Mesh& mesh_;

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "solver/solver.h"
+
 namespace hemirad {
 namespace {
 
@@ -12,18 +14,6 @@ constexpr std::size_t kWarmUpShots = 2;
 // Rounds over the shooters; no further one once so much time is spent.
 constexpr int kMostRounds = 5;
 constexpr double kSecondsForRounds = 1.5;
-
-// Every patch has light to shoot; how much decides on no count.
-PatchLight even_light(const PatchArrays& patches) {
-    PatchLight light;
-    light.emitted.assign(patches.stride, 0.0f);
-    light.reflectance.assign(patches.stride, 0.0f);
-    std::fill_n(light.emitted.begin(), patches.patch_count,
-                1.0f / static_cast<float>(patches.patch_count));
-    std::fill_n(light.reflectance.begin(), patches.patch_count, 0.5f);
-    light.band_weight = {1.0f};
-    return light;
-}
 
 PipelineSettings settings_of(const SweepPoint& point) {
     PipelineSettings settings;
@@ -40,25 +30,13 @@ ShotPipeline pipeline_for(const SweepScene& scene, const PipelineSettings& setti
     return pipeline;
 }
 
-device::Shot shoot_once(ShotPipeline& pipeline, std::uint32_t shooter) {
-    device::Shot shot = pipeline.shot();
-    shot.patch = static_cast<std::int32_t>(shooter);
-    shot.status = kRunning;
-    pipeline.set_shot(shot);
-    pipeline.aim_hemisphere(0);
-    pipeline.cull_patches();
-    pipeline.set_up_projection();
-    pipeline.count_areas();
-    pipeline.prefix_sum();
-    pipeline.bin_areas();
-    pipeline.project_patches();
-    pipeline.update_radiosity();
-    pipeline.choose_shooter();
-    return pipeline.shot();
-}
-
-void shoot(ShotPipeline& pipeline, std::uint32_t shooter) {
-    while (shoot_once(pipeline, shooter).status == kBinsFull) pipeline.enlarge_lists();
+void shoot_from(ShotPipeline& pipeline, std::uint32_t shooter) {
+    for (;;) {
+        pipeline.set_shooter(shooter);
+        shoot(pipeline, 1);
+        if (pipeline.shot().status != kBinsFull) return;
+        pipeline.enlarge_lists();
+    }
 }
 
 mp1map::ProxelRange range_of(std::uint32_t first_and_last) {
@@ -90,7 +68,7 @@ std::uint64_t areas_visited(const PlaneView::Rectangle& patch, const SweepPoint&
 
 double seconds_of(ShotPipeline& pipeline, std::uint32_t shooter) {
     const auto start = std::chrono::steady_clock::now();
-    shoot(pipeline, shooter);
+    shoot_from(pipeline, shooter);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -164,7 +142,7 @@ std::map<std::string, double> kernel_seconds(const SweepScene& scene, PipelineSe
                                              const mp1map::Device& device) {
     settings.timed = true;
     auto pipeline = pipeline_for(scene, settings, device);
-    for (const std::uint32_t shooter : scene.shooters()) shoot(pipeline, shooter);
+    for (const std::uint32_t shooter : scene.shooters()) shoot_from(pipeline, shooter);
     std::map<std::string, double> result;
     for (const auto& [name, cost] : pipeline.acu().kernel_seconds())
         result[name] = cost.first / static_cast<double>(cost.second);
@@ -172,7 +150,7 @@ std::map<std::string, double> kernel_seconds(const SweepScene& scene, PipelineSe
 }
 
 std::vector<std::int32_t> owners_of(ShotPipeline& pipeline, std::uint32_t shooter) {
-    shoot(pipeline, shooter);
+    shoot_from(pipeline, shooter);
     return pipeline.owners();
 }
 
@@ -192,7 +170,7 @@ const std::vector<PlaneView>& SweepScene::views(std::uint32_t resolution,
     settings.count_activity = true;
     auto pipeline = pipeline_for(*this, settings, device);
     for (const std::uint32_t shooter : shooters_) {
-        shoot(pipeline, shooter);
+        shoot_from(pipeline, shooter);
         views.push_back(view_of(pipeline));
     }
     return views;
@@ -242,7 +220,7 @@ SweepMeasurement measure(SweepScene& scene, const SweepPoint& point, const mp1ma
     const auto& views = scene.views(point.resolution, device);
     auto pipeline = pipeline_for(scene, settings_of(point), device);
     for (std::size_t i = 0; i < std::min(kWarmUpShots, views.size()); ++i)
-        shoot(pipeline, scene.shooters()[i]);
+        shoot_from(pipeline, scene.shooters()[i]);
 
     SweepMeasurement result;
     result.pe_array = pipeline.pe_array();

@@ -74,19 +74,11 @@ TEST(PaperStatements, AreasCountedFromRectanglesAreThoseTheArrayVisits) {
     settings.pe_array = {
         .width = 32, .height = 32, .lanes = 1, .tile_width = 32, .tile_height = 32};
     settings.count_activity = true;
-    ShotPipeline pipeline(scene.patches(), grey_light(scene.patches()), settings, device());
+    ShotPipeline pipeline(scene.patches(), even_light(scene.patches()), settings, device());
     pipeline.init_plane();
     for (const std::size_t at : {0u, 7u, 19u}) {
-        auto shot = pipeline.shot();
-        shot.patch = static_cast<std::int32_t>(scene.shooters()[at]);
-        pipeline.set_shot(shot);
-        pipeline.aim_hemisphere(0);
-        pipeline.cull_patches();
-        pipeline.set_up_projection();
-        pipeline.count_areas();
-        pipeline.prefix_sum();
-        pipeline.bin_areas();
-        pipeline.project_patches();
+        pipeline.set_shooter(scene.shooters()[at]);
+        project_hemisphere(pipeline, 0);
         const auto activity = pipeline.activity();
 
         const auto counted =

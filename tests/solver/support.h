@@ -111,7 +111,7 @@ class Shooters {
           resolution_(resolution),
           samples_(samples),
           device_(mp1map::Device::open("")),
-          pipeline_(arrays_, grey_light(arrays_), wanted(resolution, samples, request), device_) {
+          pipeline_(arrays_, even_light(arrays_), wanted(resolution, samples, request), device_) {
         pipeline_.init_plane();
     }
 
@@ -181,15 +181,7 @@ class Shooters {
         shot.most_proxels = 0;
         pipeline_.set_shot(shot);
     }
-    void project(std::uint32_t part) {
-        pipeline_.aim_hemisphere(part);
-        pipeline_.cull_patches();
-        pipeline_.set_up_projection();
-        pipeline_.count_areas();
-        pipeline_.prefix_sum();
-        pipeline_.bin_areas();
-        pipeline_.project_patches();
-    }
+    void project(std::uint32_t part) { project_hemisphere(pipeline_, part); }
     device::Shot end() {
         pipeline_.update_radiosity();
         pipeline_.choose_shooter();

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/shot_pipeline.h"
+#include "solver/solver.h"
 #include "support/patches.h"
 
 /// One shot on the default device, and what its shooter sees.
@@ -39,18 +39,6 @@ inline const std::vector<Shape>& shapes() {
     return all;
 }
 
-inline PatchLight grey_light(const PatchArrays& patches, float reflectance = 0.5f) {
-    PatchLight light;
-    light.emitted.assign(patches.stride, 0.0f);
-    light.reflectance.assign(patches.stride, 0.0f);
-    for (std::uint32_t i = 0; i < patches.patch_count; ++i) {
-        light.emitted[i] = 1.0f / static_cast<float>(patches.patch_count);
-        light.reflectance[i] = reflectance;
-    }
-    light.band_weight = {1.0f};
-    return light;
-}
-
 /// A pipeline whose next shooter is `patch`, aimed and ready to be projected.
 class Aimed {
   public:
@@ -60,7 +48,7 @@ class Aimed {
           arrays_(patch_arrays(mesh_)),
           polygons_(normalised(polygons, arrays_)),
           device_(mp1map::Device::open("")),
-          pipeline_(arrays_, grey_light(arrays_), settings(base, shape, resolution), device_) {
+          pipeline_(arrays_, even_light(arrays_), settings(base, shape, resolution), device_) {
         pipeline_.init_plane();
     }
 
@@ -69,20 +57,10 @@ class Aimed {
     const std::vector<Polygon>& polygons() const { return polygons_; }  ///< normalised
 
     void aim(int patch) {
-        auto shot = pipeline_.shot();
-        shot.patch = patch;
-        shot.status = kRunning;
-        pipeline_.set_shot(shot);
+        pipeline_.set_shooter(static_cast<std::uint32_t>(patch));
         pipeline_.aim_hemisphere(0);
     }
-    void project() {
-        pipeline_.cull_patches();
-        pipeline_.set_up_projection();
-        pipeline_.count_areas();
-        pipeline_.prefix_sum();
-        pipeline_.bin_areas();
-        pipeline_.project_patches();
-    }
+    void project() { project_hemisphere(pipeline_, 0); }
     /// The frame that aim_hemisphere made.
     reference::Shooter shooter() {
         const auto shot = pipeline_.shot();
