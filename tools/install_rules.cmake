@@ -19,7 +19,8 @@ install(TARGETS hemirad RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # What `hemirad sweep` takes unless told otherwise.
 install(FILES scenes/hall2k.obj scenes/hall2k.mtl scenes/hall14k.obj scenes/hall14k.mtl
     DESTINATION ${CMAKE_INSTALL_DATADIR}/hemirad/scenes)
-install(TARGETS hemirad_library hemirad_solver hemirad_lightmap hemirad_scene mp1map hemirad_flags
+install(TARGETS hemirad_library hemirad_solver hemirad_formfactor hemirad_lightmap hemirad_scene mp1map
+    hemirad_flags
     EXPORT hemirad-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT hemirad-targets NAMESPACE hemirad:: DESTINATION ${package})
 
@@ -27,7 +28,9 @@ install(EXPORT hemirad-targets NAMESPACE hemirad:: DESTINATION ${package})
 set(public_headers
     errors.h
     scene/mesh.h scene/read_scene.h scene/scene.h
+    formfactor/form_factors.h
     solver/bands.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h solver/solver.h
+    solver/view_factors.h
     lightmap/atomic_file.h lightmap/chart_layout.h lightmap/lightmap.h lightmap/rasterize.h
     lightmap/write_exr.h lightmap/write_faces.h lightmap/write_preview.h)
 foreach(header IN LISTS public_headers)

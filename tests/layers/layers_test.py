@@ -28,11 +28,12 @@ INCLUDES = [
     (r"kernels/.*", r"(kernels/)?(\w+\.clh|shared\.h)|mp1map/\w+\.clh"),
     (r"src/errors\.h", r"(?!)"),
     (r"src/scene/.*", r"scene/.*|errors\.h"),
+    (r"src/formfactor/.*", r"formfactor/.*|scene/.*|errors\.h"),
     (r"src/reference/.*", r"reference/.*|scene/.*|errors\.h"),
     (r"src/lightmap/.*", r"lightmap/.*|scene/.*|solver/solution\.h|errors\.h"),
-    (r"src/solver/.*", r"solver/.*|scene/.*|mp1map/\w+\.h|kernels/shared\.h|errors\.h"),
+    (r"src/solver/.*", r"(solver|formfactor|scene)/.*|mp1map/\w+\.h|kernels/shared\.h|errors\.h"),
     (r"src/cli/.*|src/main\.cpp",
-     r"(cli|solver|lightmap|scene)/.*|mp1map/(device|pe_array)\.h|errors\.h"),
+     r"(cli|solver|lightmap|formfactor|scene)/.*|mp1map/(device|pe_array)\.h|errors\.h"),
     (r"src/.*", r"(?!)"),
 ]
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+#include "formfactor/polygon_factors.h"
+
+namespace hemirad {
+
+/// A factor and a bound of its error.
+struct Estimate {
+    double value, error;
+};
+
+/// F from one polygon to another past others that may stand in between. From a point of `from` the
+/// visible part of `to` is exact: convex parts, cut by the cones of the blockers that face the
+/// point (sec. 1.5.1: a patch seen from behind hides nothing). Over `from` the integral is adaptive
+/// until its estimated error is below `target_error`, or `most_points` have been looked from.
+Estimate blocked_polygon_to_polygon(std::span<const glm::dvec3> from,
+                                    std::span<const glm::dvec3> to,
+                                    std::span<const ConvexPolygon> blockers, double target_error,
+                                    int most_points = 100000);
+
+}  // namespace hemirad
