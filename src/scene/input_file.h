@@ -41,5 +41,7 @@ void check_scene(const InputFile& file, const Scene& scene);
 
 Scene read_obj(const InputFile& file);
 Scene read_gltf(const InputFile& file);
+/// View3D's 3-D input, `F 3` and `F 3a`: surfaces with an emittance, which emit nothing.
+Scene read_vs3(const InputFile& file);
 
 }  // namespace hemirad

@@ -1,9 +1,9 @@
 #include "scene/obj_numbers.h"
 
-#include <charconv>
 #include <cmath>
 #include <string_view>
-#include <system_error>
+
+#include "scene/input_line.h"
 
 namespace hemirad {
 namespace {
@@ -28,27 +28,7 @@ void for_each_line(std::string_view text, Visit visit) {
     }
 }
 
-struct Place {
-    const InputFile& file;
-    std::size_t line;
-
-    [[noreturn]] void fail(const std::string& reason) const {
-        hemirad::fail(file, "line " + std::to_string(line), reason);
-    }
-};
-
-template <class Number>
-Number read_number(const Place& place, std::string_view word) {
-    if (word.empty()) place.fail("a number is missing");
-    const std::string_view digits = word.substr(word.front() == '+' ? 1 : 0);
-    Number value{};
-    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), value);
-    if (error == std::errc::result_out_of_range) place.fail(in_quotes(word) + " is out of range");
-    if (error != std::errc{} || end != digits.end()) place.fail(in_quotes(word) + " is no number");
-    return value;
-}
-
-glm::dvec3 read_vector(const Place& place, std::string_view rest) {
+glm::dvec3 read_vector(const InputLine& place, std::string_view rest) {
     glm::dvec3 vector{};
     for (int axis = 0; axis < 3; ++axis) {
         const std::string_view word = next_word(rest);
@@ -59,7 +39,7 @@ glm::dvec3 read_vector(const Place& place, std::string_view rest) {
 }
 
 /// `7`, `7/1`, `7//3` or `7/1/3`; texture and normal indices mean nothing to us.
-void check_corner(const Place& place, std::string_view corner) {
+void check_corner(const InputLine& place, std::string_view corner) {
     for (int slashes = 0; slashes <= 2; ++slashes) {
         const auto slash = corner.find('/');
         const std::string_view index = corner.substr(0, slash);
@@ -79,7 +59,7 @@ bool is_continued(std::string_view line) {
     return !line.empty() && line.back() == '\\' && line[first] != '#';
 }
 
-void check_face(const Place& place, std::string_view rest) {
+void check_face(const InputLine& place, std::string_view rest) {
     int corners = 0;
     for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
         check_corner(place, word);
@@ -115,7 +95,7 @@ ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
     ObjNumbers numbers;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
-        const Place place{file, number};
+        const InputLine place{file, number};
         if (keyword == "v") numbers.positions.push_back(read_vector(place, line));
         if (keyword != "f") return;
         check_face(place, line);
@@ -127,7 +107,7 @@ ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
 void check_mtl_numbers(const InputFile& file, const std::string& text) {
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
-        if (keyword == "Kd" || keyword == "Ke") read_vector(Place{file, number}, line);
+        if (keyword == "Kd" || keyword == "Ke") read_vector(InputLine{file, number}, line);
     });
 }
 

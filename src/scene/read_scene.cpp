@@ -16,18 +16,20 @@ std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
+Scene read_format(const std::string& extension, const InputFile& file) {
+    if (extension == ".gltf" || extension == ".glb") return read_gltf(file);
+    if (extension == ".obj") return read_obj(file);
+    if (extension == ".vs3") return read_vs3(file);
+    throw InputError(file.name + ": is neither .gltf, .glb, .obj nor .vs3");
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& path) {
     const InputFile file = read_input_file(path);
     if (file.bytes.empty()) throw InputError(file.name + ": is empty");
 
-    const std::string extension = lower_extension(path);
-    const bool is_gltf = extension == ".gltf" || extension == ".glb";
-    if (!is_gltf && extension != ".obj") {
-        throw InputError(file.name + ": is neither .gltf, .glb nor .obj");
-    }
-    Scene scene = is_gltf ? read_gltf(file) : read_obj(file);
+    Scene scene = read_format(lower_extension(path), file);
     check_scene(file, scene);
     return scene;
 }

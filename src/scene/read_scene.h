@@ -6,7 +6,7 @@
 
 namespace hemirad {
 
-/// Reads a .gltf, .glb or .obj file. Throws InputError, `FILE: ELEMENT: REASON`, for everything
+/// Reads a .gltf, .glb, .obj or .vs3 file. Throws InputError, `FILE: ELEMENT: REASON`, for everything
 /// that Scene does not allow.
 Scene read_scene(const std::filesystem::path& path);
 

@@ -30,7 +30,8 @@ struct Scene {
     std::vector<glm::dvec3> positions;
     std::vector<Face> faces;  ///< in file order
     std::vector<Material> materials;
-    std::vector<std::string> objects;   ///< name of each `o`/`g` or glTF node
+    std::vector<std::string> objects;   ///< name of each `o`/`g`, glTF node or View3D surface
+    std::vector<std::uint32_t> obstructions = {};  ///< objects that hide others, no more
     std::vector<std::string> warnings;  ///< one line each, for people
 };
 
