@@ -18,7 +18,7 @@ double point_to_polygon(const glm::dvec3& origin, const glm::dvec3& normal,
 
 /// From the whole of one polygon, by Stokes' theorem: double contour integral of ln r / (2 pi A),
 /// one of the two in closed form. What lies behind either plane is clipped. Shared edges and
-/// corners included; error below 1e-9.
+/// corners included; error below 1e-9. 0 without an area, and for polygons in one plane.
 double polygon_to_polygon(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);
 
 }  // namespace hemirad

@@ -62,6 +62,60 @@ TEST(PerpendicularRectangles, AreTheMeanOfThePointFactor) {
     EXPECT_NEAR(mean_point_factor(floor, wall, 400), perpendicular_rectangles(1.5, 0.8, 0.7), 1e-5);
 }
 
+TEST(ParallelRectangles, AtAnyOffsetAreThoseDirectlyOpposed) {
+    EXPECT_NEAR(parallel_rectangles({0, 1.5}, {0, 0.8}, {0, 1.5}, {0, 0.8}, 0.7),
+                parallel_rectangles(1.5, 0.8, 0.7), 1e-13);
+}
+
+TEST(ParallelRectangles, AtAnyOffsetAddUp) {
+    const Interval x{0, 1.5}, y{0.2, 0.8};
+
+    const double whole = parallel_rectangles(x, y, {-1, 3}, {0.5, 2}, 0.4);
+    const double parts = parallel_rectangles(x, y, {-1, 0.9}, {0.5, 2}, 0.4) +
+                         parallel_rectangles(x, y, {0.9, 3}, {0.5, 2}, 0.4);
+
+    EXPECT_NEAR(whole, parts, 1e-13);
+}
+
+TEST(ParallelRectangles, AtAnyOffsetAreTheMeanOfThePointFactor) {
+    const Polygon floor = quad({0, 0, 0}, {1.5, 0, 0}, {1.5, 0.8, 0}, {0, 0.8, 0});
+    const Polygon above = quad({1, 2, 0.7}, {1, 3, 0.7}, {4, 3, 0.7}, {4, 2, 0.7});
+
+    EXPECT_NEAR(parallel_rectangles({0, 1.5}, {0, 0.8}, {1, 4}, {2, 3}, 0.7),
+                mean_point_factor(floor, above, 200), 1e-6);
+}
+
+TEST(PerpendicularRectangles, AtAnyOffsetAreThoseWithACommonEdge) {
+    EXPECT_NEAR(perpendicular_rectangles({0, 1.5}, {0, 0.8}, {0, 1.5}, {0, 0.7}),
+                perpendicular_rectangles(1.5, 0.8, 0.7), 1e-13);
+}
+
+TEST(PerpendicularRectangles, AtAnyOffsetAreTheMeanOfThePointFactor) {
+    const Polygon floor = quad({0, 0.1, 0}, {1.5, 0.1, 0}, {1.5, 0.8, 0}, {0, 0.8, 0});
+    const Polygon wall = quad({0.5, 0, 0.2}, {0.5, 0, 0.7}, {2, 0, 0.7}, {2, 0, 0.2});
+
+    EXPECT_NEAR(perpendicular_rectangles({0, 1.5}, {0.1, 0.8}, {0.5, 2}, {0.2, 0.7}),
+                mean_point_factor(floor, wall, 300), 1e-6);
+}
+
+TEST(ByContours, AgreesWithBothKindsOfRectangles) {
+    const Polygon floor = quad({0, 0.1, 0}, {1.5, 0.1, 0}, {1.5, 0.8, 0}, {0, 0.8, 0});
+    const Polygon above = quad({1, 2, 0.7}, {1, 3, 0.7}, {4, 3, 0.7}, {4, 2, 0.7});
+    const Polygon wall = quad({0.5, 0, 0.2}, {0.5, 0, 0.7}, {2, 0, 0.7}, {2, 0, 0.2});
+
+    EXPECT_NEAR(by_contours(floor.corners, above.corners, 200),
+                parallel_rectangles({0, 1.5}, {0.1, 0.8}, {1, 4}, {2, 3}, 0.7), 1e-5);
+    EXPECT_NEAR(by_contours(floor.corners, wall.corners, 200),
+                perpendicular_rectangles({0, 1.5}, {0.1, 0.8}, {0.5, 2}, {0.2, 0.7}), 1e-5);
+}
+
+TEST(ByContours, AgreesWithTheMeanOfThePointFactorInGeneralPosition) {
+    const Polygon from = triangle({0, 0, 0}, {1, 0.2, 0.1}, {0.3, 1, -0.2});
+    const Polygon to = triangle({0.2, 0.1, 1.5}, {-0.5, 1, 0.9}, {0.8, 0.9, 1.2});
+
+    EXPECT_NEAR(by_contours(from.corners, to.corners, 100), mean_point_factor(from, to, 100), 1e-5);
+}
+
 TEST(PointToPolygon, SeesALargeCeilingAsEverything) {
     EXPECT_NEAR(point_factor({0, 0, 0}, {0, 0, 1}, ceiling(1e6, 1)), 1, 1e-9);
 }
