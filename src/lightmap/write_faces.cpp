@@ -1,35 +1,15 @@
 #include "lightmap/write_faces.h"
 
-#include <array>
-#include <charconv>
 #include <glm/geometric.hpp>
 #include <ostream>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "lightmap/atomic_file.h"
+#include "scene/csv.h"
 
 namespace hemirad {
 namespace {
-
-constexpr int kDigits = 9;
-
-/// RFC 4180.
-std::string csv_field(std::string_view text) {
-    if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-    std::string field = "\"";
-    for (const char c : text) field.append(c == '"' ? 2 : 1, c);
-    return field + '"';
-}
-
-/// Like %.9g, whatever the locale.
-std::string decimal(double value) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                   std::chars_format::general, kDigits);
-    return {text.data(), end.ptr};
-}
 
 struct Shape {
     double area = 0.0;
