@@ -15,29 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Viewers go by a file's ending, and no part of a scene has one of ours. Devices and pipes have
-/// none.
-void check_ending(std::string_view option, const fs::path& file, std::string_view ending) {
-    if (file.extension() == ending || (fs::exists(file) && !fs::is_regular_file(file))) return;
-    reject({option, file.native()}, "a name ending in " + std::string(ending));
-}
-
 /// The same for every way to write a file's name; weakly_canonical alone leaves "a" as it is where
 /// there is no such file yet.
 fs::path place_of(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)); }
 
-void check_distinct(const SolveOptions& options) {
+std::vector<fs::path> all_files(const SolveOptions& options) {
     std::vector<fs::path> files = output_files(options);
     if (options.report) files.push_back(*options.report);
-    std::vector<fs::path> taken{place_of(options.scene)};
-    for (const auto& file : files) {
-        const auto place = place_of(file);
-        for (const auto& other : taken)
-            if (place == other && !(fs::exists(place) && !fs::is_regular_file(place)))
-                throw InputError("hemirad: " + printable(file.string()) + ": would overwrite " +
-                                 (other == taken.front() ? "the scene" : "another output"));
-        taken.push_back(place);
-    }
+    return files;
 }
 
 /// Emission may be up to what a double holds, a lightmap only what a float does.
@@ -63,14 +48,31 @@ std::vector<fs::path> output_files(const SolveOptions& options) {
     return files;
 }
 
+void check_ending(std::string_view option, const fs::path& file, std::string_view ending) {
+    if (file.extension() == ending || (fs::exists(file) && !fs::is_regular_file(file))) return;
+    reject({option, file.native()}, "a name ending in " + std::string(ending));
+}
+
+void check_distinct(const fs::path& scene, const std::vector<fs::path>& files) {
+    std::vector<fs::path> taken{place_of(scene)};
+    for (const auto& file : files) {
+        const auto place = place_of(file);
+        for (const auto& other : taken)
+            if (place == other && !(fs::exists(place) && !fs::is_regular_file(place)))
+                throw InputError("hemirad: " + printable(file.string()) + ": would overwrite " +
+                                 (other == taken.front() ? "the scene" : "another output"));
+        taken.push_back(place);
+    }
+}
+
 void check_outputs(const SolveOptions& options) {
     check_ending("--output", options.output, ".exr");
     if (options.preview) check_ending("--preview", *options.preview, ".png");
     if (options.faces) check_ending("--faces", *options.faces, ".csv");
     if (options.report) check_ending("--report", *options.report, ".json");
-    check_distinct(options);
-    for (const auto& file : output_files(options)) check_writable(file);
-    if (options.report) check_writable(*options.report);
+    const auto files = all_files(options);
+    check_distinct(options.scene, files);
+    for (const auto& file : files) check_writable(file);
 }
 
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "cli/solve_options.h"
@@ -13,6 +14,15 @@ namespace hemirad {
 
 /// Every file that the options ask for, in the order of writing; the report comes last.
 std::vector<std::filesystem::path> output_files(const SolveOptions& options);
+
+/// Viewers go by a file's ending, and no part of a scene has one of ours: InputError where it is
+/// another. Devices and pipes have none.
+void check_ending(std::string_view option, const std::filesystem::path& file,
+                  std::string_view ending);
+
+/// InputError where two of the files are one, or one is the scene.
+void check_distinct(const std::filesystem::path& scene,
+                    const std::vector<std::filesystem::path>& files);
 
 /// Before the work begins: throws InputError where two outputs are one file, or one is the scene,
 /// or a name ends unfittingly; OutputError where one could not be written.

@@ -26,13 +26,7 @@ void add_file_options(CLI::App& command, SolveOptions& options) {
 void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     auto& solver = options.solver;
     add_resolution(command, solver.resolution);
-    add_value(command,
-              {"--shooter-samples", "M|auto", "hemispheres a shooting patch, M x M [auto]"},
-              [&](const OptionValue& value) {
-                  solver.shooter_samples =
-                      value.text == "auto" ? SolverSettings{}.shooter_samples
-                                           : static_cast<std::uint32_t>(whole_number(value, 1, 64));
-              });
+    add_shooter_samples(command, solver.shooter_samples);
     add_mesh_options(command, options.mesh);
     add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch]"},
               [&](const OptionValue& value) { options.texel_size = positive_number(value); });
@@ -103,33 +97,9 @@ void add_variant_options(CLI::App& command, Variants& variants) {
 }
 
 void add_machine_options(CLI::App& command, SolveOptions& options) {
-    auto& array = options.solver.pe_array;
-    add_text(command,
-             {"--device", "NAME|INDEX", "part of a name, or index, of hemirad devices [PoCL CPU]"},
-             options.device);
-    add_value(command, {"--compute-units", "K", "of the device's [all]"},
-              [&](const OptionValue& value) {
-                  options.compute_units = static_cast<std::uint32_t>(whole_number(value, 1, 65536));
-              });
-    add_value(command, {"--pe", "WxH", "work-items of the PE array [fit for the device]"},
-              [&](const OptionValue& value) {
-                  const auto [width, height] = extent(value);
-                  array.width = width;
-                  array.height = height;
-              });
-    add_value(command, {"--lanes", "1|4|8|16", "proxels a PE takes at once [fit for the device]"},
-              [&](const OptionValue& value) { array.lanes = lanes(value); });
-    add_value(command,
-              {"--tile", "WxH", "proxels a work-group keeps in local memory [fit for the device]"},
-              [&](const OptionValue& value) {
-                  const auto [width, height] = extent(value);
-                  array.tile_width = width;
-                  array.tile_height = height;
-              });
-    add_plane_options(command, array);
+    add_array_options(command, options.device, options.compute_units, options.solver.pe_array);
     add_variant_options(command, options.solver.variants);
-    add_text(command, {"--kernels", "FOLDER", "read the kernels from here, not from the program"},
-             options.solver.kernels_dir);
+    add_kernels(command, options.solver.kernels_dir);
 }
 
 void add_talk_options(CLI::App& command, SolveOptions& options) {
@@ -151,7 +121,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
 }
 
 void add_scene(CLI::App& command, std::filesystem::path& scene) {
-    add_text(command, {"SCENE", "", "a .gltf, .glb or .obj file"}, scene)->required();
+    add_text(command, {"SCENE", "", "a .gltf, .glb, .obj or .vs3 file"}, scene)->required();
 }
 
 void add_resolution(CLI::App& command, std::uint32_t& resolution) {
@@ -159,6 +129,47 @@ void add_resolution(CLI::App& command, std::uint32_t& resolution) {
               [&](const OptionValue& value) {
                   resolution = static_cast<std::uint32_t>(whole_number(value, 16, 8192));
               });
+}
+
+void add_shooter_samples(CLI::App& command, std::uint32_t& samples) {
+    add_value(
+        command, {"--shooter-samples", "M|auto", "hemispheres a shooting patch, M x M [auto]"},
+        [&samples, automatic = samples](const OptionValue& value) {
+            samples = value.text == "auto" ? automatic
+                                           : static_cast<std::uint32_t>(whole_number(value, 1, 64));
+        });
+}
+
+void add_array_options(CLI::App& command, std::string& device, std::uint32_t& compute_units,
+                       mp1map::PeArrayRequest& array) {
+    add_text(command,
+             {"--device", "NAME|INDEX", "part of a name, or index, of hemirad devices [PoCL CPU]"},
+             device);
+    add_value(command, {"--compute-units", "K", "of the device's [all]"},
+              [&](const OptionValue& value) {
+                  compute_units = static_cast<std::uint32_t>(whole_number(value, 1, 65536));
+              });
+    add_value(command, {"--pe", "WxH", "work-items of the PE array [fit for the device]"},
+              [&](const OptionValue& value) {
+                  const auto [width, height] = extent(value);
+                  array.width = width;
+                  array.height = height;
+              });
+    add_value(command, {"--lanes", "1|4|8|16", "proxels a PE takes at once [fit for the device]"},
+              [&](const OptionValue& value) { array.lanes = lanes(value); });
+    add_value(command,
+              {"--tile", "WxH", "proxels a work-group keeps in local memory [fit for the device]"},
+              [&](const OptionValue& value) {
+                  const auto [width, height] = extent(value);
+                  array.tile_width = width;
+                  array.tile_height = height;
+              });
+    add_plane_options(command, array);
+}
+
+void add_kernels(CLI::App& command, std::optional<std::filesystem::path>& folder) {
+    add_text(command, {"--kernels", "FOLDER", "read the kernels from here, not from the program"},
+             folder);
 }
 
 std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options) {

@@ -37,11 +37,20 @@ struct SolveOptions {
 
 void add_solve_options(CLI::App& command, SolveOptions& options);
 
-/// SCENE, of solve and info.
+/// SCENE, of all that read one.
 void add_scene(CLI::App& command, std::filesystem::path& scene);
 
-/// --resolution, of solve and info.
+/// --resolution, of solve, info and formfactors.
 void add_resolution(CLI::App& command, std::uint32_t& resolution);
+
+/// --shooter-samples; `samples` holds what auto stands for.
+void add_shooter_samples(CLI::App& command, std::uint32_t& samples);
+
+/// --device to --tile, --layout and --broadcast.
+void add_array_options(CLI::App& command, std::string& device, std::uint32_t& compute_units,
+                       mp1map::PeArrayRequest& array);
+
+void add_kernels(CLI::App& command, std::optional<std::filesystem::path>& folder);
 
 /// The options that decide on the result, as name and value, defaults resolved: the device
 /// and most of the machine model are not among them, since they change no bit.
