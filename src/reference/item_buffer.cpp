@@ -193,7 +193,7 @@ std::vector<Target> targets_of(std::span<const Polygon> polygons, const dvec3& o
         const Corners corners = seen_from(polygons[polygon], origin, samples.world_from_plane());
         const dvec3 normal = reference::normal({corners});
         const double height = -glm::dot(normal, corners[0]);
-        if (height <= 0) continue;
+        if (height <= least_height(polygons[polygon])) continue;
         const int count = polygons[polygon].is_triangle() ? 3 : 4;
         dvec3 sum(0);
         for (int k = 0; k < count; ++k) sum += corners[k];

@@ -54,9 +54,30 @@ glm::dvec3 normal(const Polygon& polygon) {
     return length > 0 ? vector_area / length : glm::dvec3(0);
 }
 
+double least_height(const Polygon& polygon) {
+    constexpr double kInPlane = 1e-9;  // of the size: far above what doubles round
+    const auto& c = polygon.corners;
+    return kInPlane * (glm::distance(c[0], c[2]) + glm::distance(c[1], c[3]));
+}
+
 std::vector<glm::dvec3> sample_points(const Polygon& polygon, int samples) {
     return polygon.is_triangle() ? triangle_points(polygon, samples)
                                  : quad_points(polygon, samples);
+}
+
+std::vector<double> sample_shares(const Polygon& polygon, int samples) {
+    const double even = 1 / double(samples * samples);
+    std::vector<double> shares(std::size_t(samples) * samples, even);
+    if (polygon.is_triangle()) return shares;
+    const auto& c = polygon.corners;
+    for (std::size_t cell = 0; cell < shares.size(); ++cell) {
+        const double s = (double(cell % samples) + 0.5) / samples;
+        const double t = (double(cell / samples) + 0.5) / samples;
+        const glm::dvec3 along_s = (1 - t) * (c[1] - c[0]) + t * (c[2] - c[3]);
+        const glm::dvec3 along_t = (1 - s) * (c[3] - c[0]) + s * (c[2] - c[1]);
+        shares[cell] *= glm::length(glm::cross(along_s, along_t)) / area(polygon);
+    }
+    return shares;
 }
 
 }  // namespace hemirad::reference

@@ -47,7 +47,10 @@ struct RayCaster::Hit {
 
 RayCaster::RayCaster(std::span<const Polygon> polygons)
     : polygons_(polygons.begin(), polygons.end()), order_(polygons.size()) {
-    for (const Polygon& polygon : polygons_) normals_.push_back(normal(polygon));
+    for (const Polygon& polygon : polygons_) {
+        normals_.push_back(normal(polygon));
+        least_heights_.push_back(least_height(polygon));
+    }
     std::iota(order_.begin(), order_.end(), 0);
     if (!order_.empty()) build(0, std::uint32_t(order_.size()));
 }
@@ -81,7 +84,7 @@ void RayCaster::meet(int polygon, const dvec3& origin, const dvec3& direction, H
     const dvec3& normal = normals_[std::size_t(polygon)];
     const double cosine = -glm::dot(normal, direction);
     const double height = glm::dot(normal, origin - corners[0]);
-    if (cosine <= 0 || height <= 0) return;
+    if (cosine <= 0 || height <= least_heights_[std::size_t(polygon)]) return;
     const double distance = height / cosine;
     if (distance > hit.distance || (distance == hit.distance && polygon > hit.polygon)) return;
     for (std::size_t k = 0; k < corners.size(); ++k) {

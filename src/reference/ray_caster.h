@@ -29,6 +29,7 @@ class RayCaster {
 
     std::vector<Polygon> polygons_;
     std::vector<glm::dvec3> normals_;
+    std::vector<double> least_heights_;
     std::vector<int> order_;
     std::vector<Node> nodes_;
 };

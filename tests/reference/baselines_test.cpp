@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "reference/closed_forms.h"
+#include "reference/form_factor_matrix.h"
 #include "reference/item_buffer.h"
 #include "reference/monte_carlo.h"
 #include "reference/ray_caster.h"
@@ -97,6 +98,26 @@ double slope(const std::vector<View>& views, const Method& method) {
     return (count * xy - x * y) / (count * xx - x * x);
 }
 
+TEST(SampleShares, MakeTheMeanOfATrapeziumItsCentroid) {
+    const Polygon trapezium = quad({-1, 0, 0}, {1, 0, 0}, {.2, 1, 0}, {-.2, 1, 0});
+    const auto points = sample_points(trapezium, 32);
+    const auto shares = sample_shares(trapezium, 32);
+
+    double sum = 0, height = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        sum += shares[i];
+        height += shares[i] * points[i].y;
+    }
+
+    EXPECT_NEAR(sum, 1, 1e-12);
+    EXPECT_NEAR(height, (2 + 2 * 0.4) / (2 + 0.4) / 3, 1e-3);  // half a unit were they even
+}
+
+TEST(SampleShares, AreEvenOnTrianglesAndRectangles) {
+    for (const Polygon& polygon : {ceiling(0.5, 1), triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})
+        for (const double share : sample_shares(polygon, 3)) EXPECT_NEAR(share, 1 / 9.0, 1e-12);
+}
+
 TEST(Hemisphere, CountsWhatTheOracleCounts) {
     const auto triangles = soup(60, 0.6, 7);
     const Truth truth = project(tilted(), triangles, 96);
@@ -118,6 +139,24 @@ TEST(Hemisphere, ErrorFallsAsThreeHalvesPowerOfResolution) {
 
 TEST(Hemisphere, ErrorFallsAlikeWhereEdgesRunAlongTheAxes) {
     EXPECT_NEAR(slope(room_views(10, 4), by_hemisphere), -1.5, 0.2);
+}
+
+// A sheet in general position, both sides: from each, rounding puts the other before or behind.
+std::vector<Polygon> sheet() {
+    const Shooter frame = tilted();
+    const auto v_axis = glm::cross(frame.normal, frame.u_axis);
+    const Polygon front = quad(frame.origin, frame.origin + frame.u_axis,
+                               frame.origin + frame.u_axis + v_axis, frame.origin + v_axis);
+    return {front, reversed(front)};
+}
+
+TEST(Hemisphere, SeesNothingOfItsOwnSheet) {
+    for (const Polygon& side : sheet())
+        for (const Shooter& shooter : shooters_on(side, 8)) {
+            const auto factors = hemisphere_factors(shooter, sheet(), 32);
+
+            EXPECT_NEAR(factors.outside, 1, 1e-12);
+        }
 }
 
 TEST(Hemicube, TakesThreeTimesResolutionSquaredSamplesThatAddUpToOne) {
@@ -333,6 +372,12 @@ TYPED_TEST(MonteCarlo, PassesThroughBackFaces) {
 
     expect_within_four_errors(factors, 1, parallel_rectangles(1, 1, 1));
     EXPECT_EQ(factors.values[2], 0);
+}
+
+TYPED_TEST(MonteCarlo, SeesNothingOfItsOwnSheet) {
+    for (const auto& sides : {sheet(), std::vector<Polygon>{sheet()[1], sheet()[0]}}) {
+        EXPECT_EQ(cast<TypeParam>(sides, 1000).outside, 1);
+    }
 }
 
 TYPED_TEST(MonteCarlo, StartsEvenlyFromTrianglesAndCrookedQuads) {

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -13,13 +14,40 @@
 namespace hemirad::reference {
 namespace {
 
-// Back faces hide nothing: where a ray leaves through one, it goes on.
-void reject_back(const RTCFilterFunctionNArguments* arguments) {
-    const auto* const normals = static_cast<const glm::vec3*>(arguments->geometryUserPtr);
-    const auto* const ray = reinterpret_cast<const RTCRay*>(arguments->ray);
-    const auto* const hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-    const glm::vec3 direction(ray->dir_x, ray->dir_y, ray->dir_z);
-    if (glm::dot(normals[hit->primID], direction) >= 0) arguments->valid[0] = 0;
+/// A point x is at height dot(normal, x) - offset.
+struct Plane {
+    glm::vec3 normal;
+    float offset;
+};
+
+struct Planes {
+    std::vector<Plane> planes;  ///< [polygon]
+    float least_height;
+};
+
+// Back faces hide nothing, nor what the ray's origin is in the plane of: the ray goes on.
+void reject_unseen(const RTCFilterFunctionNArguments* arguments) {
+    const auto& seen = *static_cast<const Planes*>(arguments->geometryUserPtr);
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    const auto& [normal, offset] = seen.planes[hit.primID];
+    const bool faces = glm::dot(normal, {ray.dir_x, ray.dir_y, ray.dir_z}) < 0;
+    const float height = glm::dot(normal, {ray.org_x, ray.org_y, ray.org_z}) - offset;
+    if (!faces || height <= seen.least_height) arguments->valid[0] = 0;
+}
+
+Planes planes_of(std::span<const Polygon> polygons) {
+    constexpr float kInPlane = 1e-6f;  // a few times what floats round
+    Planes result;
+    double extent = 0;
+    for (const Polygon& polygon : polygons) {
+        const glm::dvec3 up = normal(polygon);
+        result.planes.push_back({up, float(glm::dot(up, polygon.corners[0]))});
+        for (const glm::dvec3& corner : polygon.corners)
+            extent = std::max(extent, glm::length(corner));
+    }
+    result.least_height = kInPlane * float(extent);
+    return result;
 }
 
 void set_corners(RTCGeometry geometry, std::span<const Polygon> polygons) {
@@ -42,7 +70,7 @@ void set_corners(RTCGeometry geometry, std::span<const Polygon> polygons) {
 struct EmbreeCaster::Scene {
     RTCDevice device = rtcNewDevice("threads=1");
     RTCScene scene = rtcNewScene(device);
-    std::vector<glm::vec3> normals;
+    Planes planes;
 
     ~Scene() {
         rtcReleaseScene(scene);
@@ -51,11 +79,11 @@ struct EmbreeCaster::Scene {
 };
 
 EmbreeCaster::EmbreeCaster(std::span<const Polygon> polygons) : scene_(std::make_unique<Scene>()) {
-    for (const Polygon& polygon : polygons) scene_->normals.emplace_back(normal(polygon));
+    scene_->planes = planes_of(polygons);
     const RTCGeometry geometry = rtcNewGeometry(scene_->device, RTC_GEOMETRY_TYPE_QUAD);
     set_corners(geometry, polygons);
-    rtcSetGeometryUserData(geometry, scene_->normals.data());
-    rtcSetGeometryIntersectFilterFunction(geometry, reject_back);
+    rtcSetGeometryUserData(geometry, &scene_->planes);
+    rtcSetGeometryIntersectFilterFunction(geometry, reject_unseen);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_->scene, geometry);
     rtcReleaseGeometry(geometry);

@@ -7,8 +7,8 @@
 
 namespace hemirad::reference {
 
-/// RayCaster's work done by Embree, in single precision: many times as fast, and a ray through an
-/// edge may end on either side of it.
+/// RayCaster's work done by Embree, in single precision: a ray through an edge may end on either
+/// side of it, and a polygon is not seen from closer to its plane than 1e-6 of the scene's extent.
 class EmbreeCaster {
   public:
     explicit EmbreeCaster(std::span<const Polygon> polygons);
