@@ -72,6 +72,28 @@ def write_obj(scene, folder, name, comment):
                 out.write("f " + " ".join(str(index[p]) for p in points) + "\n")
 
 
+# --- View3D: triangles and quads; emittance is 1 - reflectance, "obstruction" a material ----------
+
+
+def write_vs3(scene, folder, name, comment):
+    index = {}
+    for _, _, points in scene.faces:
+        for point in points:
+            index.setdefault(point, len(index) + 1)
+    faces = sorted(scene.faces, key=lambda face: face[1] == "obstruction")
+    with open(os.path.join(folder, name + ".vs3"), "w", encoding="ascii", newline="\n") as out:
+        out.write(f"T {comment}\nF 3\n! # x y z\n")
+        out.writelines(f"V {i} {text_of(point)}\n" for point, i in index.items())
+        out.write("! # v1 v2 v3 v4 base cmb emit name\n")
+        for number, (group, material, points) in enumerate(faces, 1):
+            corners = [index[p] for p in points] + [0] * (4 - len(points))
+            out.write(("O" if material == "obstruction" else "S") + f" {number} {text_of(corners)}")
+            if material != "obstruction":
+                out.write(f" 0 0 {text_of([1 - scene.materials[material][0][0]])} {group}")
+            out.write("\n")
+        out.write("End of data\n")
+
+
 # --- glTF: a node and a mesh an object, a primitive a material, polygons as fans -----------------
 
 
@@ -332,6 +354,13 @@ def squares(_):
     return scene
 
 
+def screen(options):
+    scene = squares(options)
+    quarter = [(0, 0.5, 0), (0, 0.5, 0.5), (0.5, 0.5, 0.5), (0.5, 0.5, 0)]
+    scene.add("screen", "obstruction", quarter)
+    return scene
+
+
 def lroom(_):
     """Two rooms around a corner; the lamp of the first lights the second through a doorway."""
     scene = Scene({"plaster": ((0.75, 0.73, 0.7), BLACK), "boards": ((0.45, 0.3, 0.18), BLACK),
@@ -480,6 +509,7 @@ SCENES = {  # name -> (make, write, comment)
     "cornell": (cornell, write_gltf, "Cornell box, graphics.cornell.edu/online/box/data.html"),
     "furnace": (furnace, write_obj, "Unit cube, fronts inwards, every wall alike"),
     "squares": (squares, write_obj, "Two unit squares that face each other at distance 1"),
+    "screen": (screen, write_vs3, "Two unit squares at distance 1 and a screen halfway"),
     "lroom": (lroom, write_obj, "Two rooms and a doorway, the lamp in the first"),
     "hall2k": (lambda _: hall(1), write_obj, "Furnished hall, 9 x 6 x 3 m"),
     "hall14k": (lambda _: hall(3), write_obj, "Furnished hall, 27 x 18 x 3 m"),
