@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(ReadObj, RefusesWhatIsNoFile) {
     EXPECT_THAT(folder.error_of(folder.path() / "no.obj"), HasSubstr("no.obj: does not exist"));
     EXPECT_THAT(folder.error_of(folder.path()), HasSubstr(": is a folder, not a scene file"));
-    EXPECT_EQ(folder.error_of("room.ply", "ply\n"), "room.ply: is neither .gltf, .glb nor .obj");
+    EXPECT_EQ(folder.error_of("room.ply", "ply\n"), "room.ply: is neither .gltf, .glb, .obj nor .vs3");
 }
 
 TEST_F(ReadObj, RefusesALibraryThatIsAFolder) {
