@@ -7,6 +7,7 @@
 #include "cli/info.h"
 #include "cli/solve.h"
 #include "cli/sweep.h"
+#include "cli/tradeoff.h"
 #include "errors.h"
 #include "scene/printable.h"
 
@@ -42,6 +43,7 @@ CommandLine::CommandLine()
     add_info(app_, chosen_);
     add_devices(app_, chosen_);
     add_sweep(app_, chosen_);
+    add_tradeoff(app_, chosen_);
     for (auto* const command : app_.get_subcommands({})) command->allow_extras();
 }
 

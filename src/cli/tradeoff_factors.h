@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cli/tradeoff_plan.h"
+#include "mp1map/device.h"
+#include "reference/polygon.h"
+#include "scene/mesh.h"
+#include "solver/patch_arrays.h"
+
+namespace hemirad {
+
+/// Rows of factors against the truth; absolute.
+struct FactorErrors {
+    double rms = 0;  ///< over the patches that truth or method sees
+    double largest = 0;
+    double row_sum = 0;  ///< mean of |sum of a row + what truly leaves the scene - 1|
+};
+
+struct FactorMeasurement {
+    double samples = 0;  ///< a row
+    double seconds = 0;  ///< a row, the median
+    FactorErrors errors;
+};
+
+/// Factors from some patches of a mesh, by one method after another.
+class FactorRows {
+  public:
+    /// Finds the truth for `shooters` fronts, evenly spread over the mesh, to within `truth_error`.
+    FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_error,
+               const mp1map::Device& device);
+
+    FactorMeasurement measure(const FactorPoint& point) const;
+    std::size_t row_count() const { return shooters_.size(); }
+
+  private:
+    const mp1map::Device& device_;
+    PatchArrays arrays_;
+    std::vector<reference::Polygon> polygons_;
+    std::vector<std::uint32_t> shooters_;
+    std::vector<std::vector<double>> truth_;  ///< [row][patch]
+    std::vector<double> outside_;             ///< [row]
+};
+
+}  // namespace hemirad
