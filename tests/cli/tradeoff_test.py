@@ -139,6 +139,24 @@ class OddScenes(unittest.TestCase):
         rows = read_rows(self.folder / "tradeoff.csv")
         self.assertEqual({"factors"}, {row["kind"] for row in rows})
 
+    def test_constant_distance_loses_what_stands_before_a_ramp(self):
+        # A small sheet under a ramp whose middle is nearer to the floor.
+        write_scene(self.folder, "newmtl white\nKd 1 1 1\n")
+        corners = ((-.3, -.3, 0), (.3, -.3, 0), (.3, .3, 0), (-.3, .3, 0),
+                   (-3, -1, .2), (-3, 1, .2), (3, 1, 2.2), (3, -1, 2.2),
+                   (1.1, -.4, 1.4), (1.1, .4, 1.4), (1.9, .4, 1.4), (1.9, -.4, 1.4))
+        vertices = "".join("v {} {} {}\n".format(*corner) for corner in corners)
+        faces = "usemtl white\nf 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\n"
+        (self.folder / "scene.obj").write_bytes(scenes.obj(vertices, faces))
+
+        result = run_hemirad(self.folder, "scene.obj", "--quick", "--patch-size", "inf")
+
+        self.assertEqual(0, result.returncode, result.stderr)
+        rows = read_rows(self.folder / "tradeoff.csv")
+        settings = {"runs_on": "device", "resolution": "128", "shooter_samples": "2"}
+        self.assertGreater(error(rows, method="constant_distance", **settings),
+                           1.05 * error(rows, method="count", **settings))
+
     def test_wrong_files_are_refused_before_the_work(self):
         write_scene(self.folder)
         for scene, output, says in (("scene.obj", "out.exr", ".csv"),
