@@ -1,15 +1,19 @@
-// Sec. 1.5.2: the coordinate system of the source patch, its origin in one of `samples` x
-// `samples` equal parts of it. A hemisphere at a patch's centre gives a point-to-area factor;
+// Sec. 1.5.2: the coordinate system of the source patch, its origin in the next of samples x
+// samples equal parts of it. A hemisphere at a patch's centre gives a point-to-area factor;
 // several on the patch approach the area-to-area factor.
 #include "shared.h"
 
 #pragma OPENCL FP_CONTRACT OFF
 
-// The disk is turned against the patch's first edge by an angle of tangent 0.618..., the most
-// irrational of slopes: else the edges of a rectangular room run through rows of proxel centres,
-// and ties, which all go to the lowest patch, bias its form factors (0.3 % in a furnace at 512^2).
-#define kDiskCosine 0.85065081f
-#define kDiskSine 0.52573111f
+// The disk is turned against the patch's first edge by 15 to 75 degrees: else the edges of a
+// rectangular room run through rows of proxel centres, and ties, which all go to the lowest patch,
+// bias its form factors (0.3 % in a furnace at 512^2). Every hemisphere turns it otherwise, as the
+// multiples of two irrational numbers (the plastic number's, in units of 2^-32) spread evenly, so
+// that aliasing is not the same for all that shoot at an edge.
+static float disk_angle(int patch, int part) {
+    const uint turn = (uint)(patch + 1) * 3242174889u + (uint)part * 2447445414u;
+    return (1.0f / 12 + turn * (1.0f / 3 / 4294967296.0f)) * M_PI_F;
+}
 
 static float3 corner_of(const __global float* corners, int stride, int patch, int k) {
     const __global float* at = corners + 3 * k * stride + patch;
@@ -72,9 +76,12 @@ static void store_axis(float3 axis, __global float* to) {
 }
 
 __kernel void aim_hemisphere(__global Shot* shot, const __global float* corners,
-                             const __global float* normals, int stride, int samples, int part) {
+                             const __global float* normals, int stride,
+                             const __global int* patch_samples) {
     if (shot->status != kRunning) return;
-    const int patch = shot->patch;
+    const int patch = shot->patch, samples = patch_samples[patch], part = shot->part;
+    ++shot->part;
+    shot->part_count = samples * samples;
     float3 corner[4];
     for (int k = 0; k < 4; ++k)
         corner[k] = corner_of(corners, stride, patch, min(k, CORNERS - 1));
@@ -87,7 +94,8 @@ __kernel void aim_hemisphere(__global Shot* shot, const __global float* corners,
         (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
     const float3 edge = corner[1] - corner[0];
     const float3 along = normalize(edge - normal * dot(edge, normal));
-    const float3 u_axis = kDiskCosine * along + kDiskSine * cross(normal, along);
+    const float angle = disk_angle(patch, part);
+    const float3 u_axis = cos(angle) * along + sin(angle) * cross(normal, along);
     store_axis(u_axis, shot->u_axis);
     store_axis(cross(normal, u_axis), shot->v_axis);
     store_axis(normal, shot->normal);

@@ -14,14 +14,16 @@ static void add_escaped(__global float* sum, __global float* rest, float value) 
 }
 
 static void close_books(__global Shot* shot, const __global float* shot_flux, uint received_proxels,
-                        __global int* escaped_count, float per_proxel, __global float* escaped) {
+                        __global int* escaped_count, int disk_proxels, __global float* escaped) {
     const uint escapes = escaped_count[0];
-    const uint proxels = received_proxels + escapes;
+    const int shot_proxels = disk_proxels * shot->part_count;
+    const int surplus = (int)(received_proxels + escapes) - shot_proxels;
+    const float per_proxel = 1.0f / shot_proxels;
     for (int band = 0; band < BANDS; ++band)
         add_escaped(escaped + band, escaped + BANDS + band,
                     shot_flux[band] * (escapes * per_proxel));
-    shot->least_proxels = min(shot->least_proxels, proxels);
-    shot->most_proxels = max(shot->most_proxels, proxels);
+    shot->least_surplus = min(shot->least_surplus, surplus);
+    shot->most_surplus = max(shot->most_surplus, surplus);
     shot->escaped_proxels = escapes;
     ++shot->shots;
     escaped_count[0] = 0;  // of proxels that escaped, then of those outside the disk
@@ -51,6 +53,8 @@ static void aim_at(__global Shot* shot, BlockSummary best, const __local float* 
     }
     shot->unshot_fraction = unshot_fraction;
     shot->patch = best.patch;
+    shot->part = 0;
+    if (shot->shots >= shot->shot_limit) shot->status = kPaused;
     if (unshot_fraction < tolerance) shot->status = kConverged;
     if (!(best.energy > 0.0f)) shot->status = kExhausted;
 }
@@ -58,7 +62,7 @@ static void aim_at(__global Shot* shot, BlockSummary best, const __local float* 
 __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* summaries,
                              const __global float* block_unshot, int block_count,
                              const __global float* unshot, int stride,
-                             const __global float* band_weight, float tolerance, float per_proxel,
+                             const __global float* band_weight, float tolerance, int disk_proxels,
                              __global int* proxel_count, __global float* escaped,
                              __global float* shot_flux) {
     __local BlockSummary summary[REDUCE_PES];
@@ -78,11 +82,11 @@ __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* s
     barrier(CLK_LOCAL_MEM_FENCE);
 
     // No work-item may leave before a barrier, see prefix_sum.cl.
-    if (pe == 0 && shot->status == kRunning) {
+    if (pe == 0 && shot->status == kRunning && shot->part >= shot->part_count) {
         for (int other = 1; other < REDUCE_PES; ++other)
             merge(summary, left, summary[other], left + other * BANDS);
         if (shot->patch >= 0)
-            close_books(shot, shot_flux, summary[0].proxels, proxel_count + stride, per_proxel,
+            close_books(shot, shot_flux, summary[0].proxels, proxel_count + stride, disk_proxels,
                         escaped);
         aim_at(shot, summary[0], left, unshot, stride, band_weight, tolerance, shot_flux);
     }

@@ -42,18 +42,21 @@ typedef uint uint32_t;
 #define kConverged 1
 #define kBinsFull 2  // the lists of the tiles outgrew their buffer; the host enlarges it
 #define kExhausted 3  // nothing is left to shoot
+#define kPaused 4     // as many shots as the host asked for
 
 // What the PEs know of the shooting patch, and the host of the progress.
 typedef struct {
     float origin[3];  // one of the shooter's hemispheres, normalised scene units
     float u_axis[3], v_axis[3], normal[3];
     int32_t patch;
+    uint32_t part, part_count;  // its hemispheres: aimed so far, and all
     int32_t status;
-    uint32_t shots;
+    uint32_t shots, shot_limit;
     uint32_t bin_entries;  // patches in the lists of all tiles
     float unshot_fraction;    // largest of the bands
-    uint32_t least_proxels, most_proxels;  // owned and escaped, of all shots: closure
-    uint32_t escaped_proxels;              // of the last shot
+    // Closure, of all shots: proxels owned and escaped, less those of the disks; both 0.
+    int32_t least_surplus, most_surplus;
+    uint32_t escaped_proxels;  // of the last shot
 } Shot;
 
 // Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
@@ -75,7 +78,7 @@ typedef struct {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 12);
-static_assert(sizeof(Shot) == 80);
+static_assert(sizeof(Shot) == 92);
 static_assert(sizeof(Projection) == 72);
 }  // namespace hemirad::device
 #endif

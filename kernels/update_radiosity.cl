@@ -1,6 +1,7 @@
 // Sec. 1.5.4: every patch adds the flux that its form factor brings it, by the reciprocity of
 // eq. 1.1: F_ji B_i A_j = F_ij A_i B_i, so fluxes need no areas. Each PE then reduces the unshot
-// flux of its blocks, the first level of the choice of the most energetic patch.
+// flux of its blocks, the first level of the choice of the most energetic patch. Nothing is done
+// before the shooter's last hemisphere.
 // received, received_rest, unshot, reflectance: [band][patch]; flux in normalised units.
 #include "compensated.clh"
 #include "shared.h"
@@ -25,13 +26,14 @@ static void shoot_at(const __global Shot* shot, const __global float* shot_flux,
 }
 
 __kernel void update_radiosity(__global Shot* shot, const __global float* shot_flux,
-                               __global int* proxel_count, float per_proxel, int stride,
+                               __global int* proxel_count, int disk_proxels, int stride,
                                __global float* received, __global float* received_rest,
                                __global float* unshot, const __global float* reflectance,
                                const __global float* band_weight,
                                __global BlockSummary* summaries, __global float* block_unshot) {
-    if (shot->status != kRunning) return;
+    if (shot->status != kRunning || shot->part < shot->part_count) return;
     const int pe = get_global_id(0), pe_count = get_global_size(0);
+    const float per_proxel = 1.0f / (disk_proxels * max(shot->part_count, 1u));
     for (int block = pe; block < stride / kReduceBlock; block += pe_count) {
         BlockSummary summary = {-1.0f, 0, 0u};
         real_v sums[BANDS][ACCUMULATORS];

@@ -26,7 +26,7 @@ ShotPipeline pipeline_for(const PatchArrays& patches, std::uint32_t resolution, 
 
 device::Shot shoot_from(ShotPipeline& pipeline, std::uint32_t patch) {
     pipeline.set_shooter(patch);
-    shoot(pipeline, 1);
+    shoot(pipeline);
     return pipeline.shot();
 }
 

@@ -59,14 +59,23 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            flag("KEEP_OWNERS", settings.keep_owners);
 }
 
+std::vector<std::int32_t> samples_of(const PipelineSettings& settings, std::uint32_t stride) {
+    if (settings.patch_samples.empty())
+        return std::vector(stride, static_cast<std::int32_t>(settings.shooter_samples));
+    std::vector<std::int32_t> samples = settings.patch_samples;
+    samples.resize(stride, 1);
+    return samples;
+}
+
 // Counts are signed 32-bit integers on the device.
-std::uint64_t countable_proxels(std::uint32_t resolution, std::uint32_t samples) {
-    const std::uint64_t proxels = disk_proxel_count(resolution) * samples * samples;
+void require_countable(std::uint64_t disk_proxels, std::uint32_t resolution,
+                       const std::vector<std::int32_t>& samples) {
+    const std::uint64_t most = static_cast<std::uint64_t>(*std::ranges::max_element(samples));
+    const std::uint64_t proxels = disk_proxels * most * most;
     if (proxels > std::numeric_limits<std::int32_t>::max())
         throw InputError("--resolution " + std::to_string(resolution) + " with --shooter-samples " +
-                         std::to_string(samples) + ": " + std::to_string(proxels) +
+                         std::to_string(most) + ": " + std::to_string(proxels) +
                          " proxels a shot; at most 2147483647 can be counted");
-    return proxels;
 }
 
 device::Shot first_shot() {
@@ -74,7 +83,9 @@ device::Shot first_shot() {
     shot.patch = -1;
     shot.status = kRunning;
     shot.unshot_fraction = 1;
-    shot.least_proxels = std::numeric_limits<std::uint32_t>::max();
+    shot.shot_limit = std::numeric_limits<std::uint32_t>::max();
+    shot.least_surplus = std::numeric_limits<std::int32_t>::max();
+    shot.most_surplus = std::numeric_limits<std::int32_t>::min();
     return shot;
 }
 
@@ -121,7 +132,7 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
                                                      static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
-    const std::uint64_t geometry = stride * 4 * (3 * corner_count + 3);
+    const std::uint64_t geometry = stride * 4 * (3 * corner_count + 4);
     const std::uint64_t radiosity = stride * 4 * (4 * bands + 1);
     const std::uint64_t projection = slots * (sizeof(device::Projection) + 4) + stacks * 4;
     const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * stacks);
@@ -136,19 +147,20 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     : array_(mp1map::fit_pe_array(device.summary(), settings.pe_array)),
       acu_(device, settings.timed),
       resolution_(settings.resolution),
-      samples_(settings.shooter_samples),
       stride_(patches.stride),
       band_count_(light.band_count),
       tile_count_(count_tiles(resolution_, array_)),
       stack_count_(array_.array_count * array_.pe_count()),
       depth_(stack_depth(stride_, stack_count_)),
-      disk_proxels_(countable_proxels(resolution_, samples_)),
+      disk_proxels_(disk_proxel_count(resolution_)),
       tolerance_(static_cast<float>(settings.tolerance)),
-      per_proxel_(static_cast<float>(1.0 / static_cast<double>(disk_proxels_))) {
+      samples_(samples_of(settings, stride_)) {
+    require_countable(disk_proxels_, resolution_, samples_);
     build_kernels(device, settings, patches.corner_count);
     shot_ = acu_.plural(std::vector{first_shot()});
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
+    patch_samples_ = acu_.plural(samples_);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
     stack_ = acu_.plural<std::int32_t>(std::size_t{stack_count_} * depth_);
     stack_height_ = acu_.plural<std::int32_t>(stack_count_);
@@ -192,9 +204,9 @@ mp1map::Grid ShotPipeline::tile_grid() const { return {tile_count_, array_.pe_co
 
 void ShotPipeline::init_plane() { acu_.issue(kernel("init_plane"), tile_grid(), roots_); }
 
-void ShotPipeline::aim_hemisphere(std::uint32_t part) {
+void ShotPipeline::aim_hemisphere() {
     acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, corners_, normals_, std::int32_t(stride_),
-               std::int32_t(samples_), std::int32_t(part));
+               patch_samples_);
 }
 
 void ShotPipeline::cull_patches() {
@@ -230,14 +242,14 @@ void ShotPipeline::project_patches() {
 
 void ShotPipeline::update_radiosity() {
     acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               per_proxel_, std::int32_t(stride_), received_, received_rest_, unshot_, reflectance_,
-               band_weight_, summaries_, block_unshot_);
+               std::int32_t(disk_proxels_), std::int32_t(stride_), received_, received_rest_,
+               unshot_, reflectance_, band_weight_, summaries_, block_unshot_);
 }
 
 void ShotPipeline::choose_shooter() {
     acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
                std::int32_t(summaries_.size()), unshot_, std::int32_t(stride_), band_weight_,
-               tolerance_, per_proxel_, proxel_count_, escaped_, shot_flux_);
+               tolerance_, std::int32_t(disk_proxels_), proxel_count_, escaped_, shot_flux_);
 }
 
 device::Shot ShotPipeline::shot() { return acu_.unload(shot_).front(); }
@@ -246,11 +258,24 @@ void ShotPipeline::set_shot(const device::Shot& shot) {
     acu_.load(shot_, std::span<const device::Shot>(&shot, 1));
 }
 
-void ShotPipeline::set_shooter(std::uint32_t patch) {
+void ShotPipeline::set_shooter(std::uint32_t patch, std::uint32_t part) {
     device::Shot next = shot();
     next.patch = static_cast<std::int32_t>(patch);
+    next.part = part;
     next.status = kRunning;
     set_shot(next);
+}
+
+void ShotPipeline::set_shot_limit(std::uint64_t shots) {
+    device::Shot next = shot();
+    next.shot_limit = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(shots, std::numeric_limits<std::uint32_t>::max()));
+    if (next.status == kPaused && next.shots < next.shot_limit) next.status = kRunning;
+    set_shot(next);
+}
+
+std::uint32_t ShotPipeline::part_count(std::uint32_t patch) const {
+    return static_cast<std::uint32_t>(samples_[patch] * samples_[patch]);
 }
 
 void ShotPipeline::enlarge_lists() {
@@ -261,8 +286,9 @@ void ShotPipeline::enlarge_lists() {
                                   " can be addressed: raise --patch-size or lower --resolution");
     lists_ = acu_.plural<std::int32_t>(
         std::min<std::size_t>(std::size_t{halted.bin_entries} * 3 / 2, kMostListEntries));
-    acu_.clear(proxel_count_);
+    clear_counts();
     halted.status = kRunning;
+    halted.part = 0;
     set_shot(halted);
 }
 
@@ -284,6 +310,8 @@ std::vector<double> ShotPipeline::escaped() {
 }
 
 std::vector<std::int32_t> ShotPipeline::proxel_counts() { return acu_.unload(proxel_count_); }
+
+void ShotPipeline::clear_counts() { acu_.clear(proxel_count_); }
 
 Activity ShotPipeline::activity() {
     const auto totals = acu_.unload(activity_);

@@ -32,7 +32,8 @@ struct Activity {
 
 struct PipelineSettings {
     std::uint32_t resolution = 512;
-    std::uint32_t shooter_samples = 1;
+    std::uint32_t shooter_samples = 1;        ///< M x M hemispheres a patch,
+    std::vector<std::int32_t> patch_samples;  ///< [patch] unless these are given
     double tolerance = 1e-3;
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;
@@ -62,7 +63,7 @@ class ShotPipeline {
                  const PipelineSettings& settings, const mp1map::Device& device);
 
     void init_plane();
-    void aim_hemisphere(std::uint32_t part);
+    void aim_hemisphere();
     void cull_patches();
     void set_up_projection();
     void count_areas();
@@ -75,21 +76,26 @@ class ShotPipeline {
     /// Waits; how far the device has come.
     device::Shot shot();
     void set_shot(const device::Shot& shot);
-    void set_shooter(std::uint32_t patch);  ///< instead of the most energetic one
+    /// The next shooter, instead of the most energetic one; its first hemisphere is `part`.
+    void set_shooter(std::uint32_t patch, std::uint32_t part = 0);
+    void set_shot_limit(std::uint64_t shots);  ///< goes on after kPaused, up to so many in all
     /// After kBinsFull: makes room for the lists and lets the halted shot be repeated.
     void enlarge_lists();
 
     std::vector<double> received();  ///< [band * stride + patch], of the emitted flux
     std::vector<float> unshot();     ///< [band * stride + patch]
     std::vector<double> escaped();   ///< [band]
+    /// Of the hemispheres since the last shot; after the patches' (stride()) those that escaped.
     std::vector<std::int32_t> proxel_counts();
+    void clear_counts();
     /// Owner of proxel row * resolution + column; patch_count() + padding: escaped. keep_owners.
     std::vector<std::int32_t> owners();
     std::int32_t escaped_owner() const { return static_cast<std::int32_t>(stride_); }
-    Activity activity();                        ///< since the last call; count_activity
+    Activity activity();                            ///< since the last call; count_activity
     std::vector<device::Projection> projections();  ///< of the last shot, in patch order
 
-    std::uint64_t disk_proxels() const { return disk_proxels_; }
+    std::uint64_t disk_proxels() const { return disk_proxels_; }  ///< of one hemisphere
+    std::uint32_t part_count(std::uint32_t patch) const;          ///< hemispheres of a patch
     const mp1map::PeArray& pe_array() const { return array_; }
     std::uint32_t stride() const { return stride_; }
     std::size_t band_count() const { return band_count_; }
@@ -109,14 +115,16 @@ class ShotPipeline {
     std::map<std::string, mp1map::Kernel> kernels_;
     double build_seconds_ = 0;
 
-    std::uint32_t resolution_, samples_, stride_;
+    std::uint32_t resolution_, stride_;
     std::size_t band_count_;
     std::uint32_t tile_count_, stack_count_, depth_;
     std::uint64_t disk_proxels_;
-    float tolerance_, per_proxel_;
+    float tolerance_;
+    std::vector<std::int32_t> samples_;  // [patch]
 
     mp1map::Plural<device::Shot> shot_;
     mp1map::Plural<float> corners_, normals_, roots_;
+    mp1map::Plural<std::int32_t> patch_samples_;
     mp1map::Plural<std::int32_t> stack_, stack_height_;
     mp1map::Plural<device::Projection> projections_;
     mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;

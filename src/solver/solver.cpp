@@ -8,7 +8,7 @@ namespace {
 
 // The host looks at the device's progress about this often; shots in between need no round trip.
 constexpr double kSecondsBetweenLooks = 0.1;
-constexpr std::uint64_t kMostShotsBetweenLooks = 4096;
+constexpr std::uint64_t kMostPassesBetweenLooks = 4096;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -67,8 +67,8 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
 
 // The inner loops of sec. 1.5.4, over the levels of the stacks and their patches, run inside the
 // kernels.
-void project_hemisphere(ShotPipeline& pipeline, std::uint32_t part) {
-    pipeline.aim_hemisphere(part);
+void project_hemisphere(ShotPipeline& pipeline) {
+    pipeline.aim_hemisphere();
     pipeline.cull_patches();
     pipeline.set_up_projection();
     pipeline.count_areas();
@@ -77,22 +77,26 @@ void project_hemisphere(ShotPipeline& pipeline, std::uint32_t part) {
     pipeline.project_patches();
 }
 
-void shoot(ShotPipeline& pipeline, std::uint32_t samples) {
-    for (std::uint32_t part = 0; part < samples * samples; ++part)
-        project_hemisphere(pipeline, part);
+void shoot(ShotPipeline& pipeline) {
+    project_hemisphere(pipeline);
     pipeline.update_radiosity();
     pipeline.choose_shooter();
 }
 
-// Makes `shots` more shots, fewer where the device finds that it is done: the rest then do nothing.
-Progress ProgressiveSolver::advance(std::uint64_t shots) {
-    for (std::uint64_t i = 0; i < shots; ++i) shoot(pipeline_, settings_.shooter_samples);
+// Fewer where the device finds that it is done: the rest then do nothing.
+Progress ProgressiveSolver::advance(std::uint64_t hemispheres) {
+    for (std::uint64_t i = 0; i < hemispheres; ++i) shoot(pipeline_);
     device::Shot state = pipeline_.shot();
     if (state.status == kBinsFull) {
         pipeline_.enlarge_lists();
         state = pipeline_.shot();
     }
     return {state.shots, state.unshot_fraction, 0};
+}
+
+std::uint64_t ProgressiveSolver::next_pause(std::uint64_t shots) const {
+    if (settings_.stop_every == 0) return settings_.max_shots;
+    return std::min(settings_.max_shots, (shots / settings_.stop_every + 1) * settings_.stop_every);
 }
 
 Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_progress) {
@@ -102,17 +106,15 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
         const device::Shot state = pipeline_.shot();
         if (state.status == kConverged || state.status == kExhausted) return Stop::converged;
         if (state.shots >= settings_.max_shots) return Stop::max_shots;
+        pipeline_.set_shot_limit(next_pause(state.shots));
 
-        std::uint64_t shots = std::min(batch, settings_.max_shots - state.shots);
-        if (settings_.stop_every != 0)
-            shots = std::min(shots, settings_.stop_every - state.shots % settings_.stop_every);
         const double before = seconds_since(start);
-        Progress progress = advance(shots);
+        Progress progress = advance(batch);
         progress.seconds = seconds_since(start);
-        const double per_shot = (progress.seconds - before) / static_cast<double>(shots);
+        const double per_pass = (progress.seconds - before) / static_cast<double>(batch);
         batch = std::clamp<std::uint64_t>(
-            static_cast<std::uint64_t>(kSecondsBetweenLooks / std::max(per_shot, 1e-9)), 1,
-            std::min(2 * batch, kMostShotsBetweenLooks));
+            static_cast<std::uint64_t>(kSecondsBetweenLooks / std::max(per_pass, 1e-9)), 1,
+            std::min(2 * batch, kMostPassesBetweenLooks));
 
         if (!on_progress(progress)) return Stop::interrupted;
         if (progress.seconds >= settings_.time_limit) return Stop::time_limit;
@@ -156,7 +158,7 @@ Closure ProgressiveSolver::closure() {
     const device::Shot state = pipeline_.shot();
     if (state.shots == 0) return {};
     const double disk = static_cast<double>(pipeline_.disk_proxels());
-    return {state.least_proxels / disk, state.most_proxels / disk};
+    return {1 + state.least_surplus / disk, 1 + state.most_surplus / disk};
 }
 
 const mp1map::PeArray& ProgressiveSolver::pe_array() const { return pipeline_.pe_array(); }

@@ -39,12 +39,12 @@ struct Progress {
     double seconds = 0;  ///< since solve() began
 };
 
-/// What one of a shot's hemispheres sees is counted, on the `part`-th of its places.
-void project_hemisphere(ShotPipeline& pipeline, std::uint32_t part);
+/// What the next of the shooter's hemispheres sees is counted.
+void project_hemisphere(ShotPipeline& pipeline);
 
-/// One pass of the loop of sec. 1.5.4, from samples x samples hemispheres, for the shooter that the
-/// pipeline has chosen.
-void shoot(ShotPipeline& pipeline, std::uint32_t samples);
+/// One pass of the loop of sec. 1.5.4: one hemisphere of the shooter that the pipeline has chosen
+/// and, if it was the last one, what it shoots and who shoots next.
+void shoot(ShotPipeline& pipeline);
 
 enum class Stop { converged, max_shots, time_limit, interrupted };
 
@@ -75,7 +75,8 @@ class ProgressiveSolver {
     std::map<std::string, std::pair<double, std::uint64_t>> kernel_seconds();
 
   private:
-    Progress advance(std::uint64_t shots);
+    Progress advance(std::uint64_t hemispheres);
+    std::uint64_t next_pause(std::uint64_t shots) const;
 
     const Mesh& mesh_;
     SolverSettings settings_;

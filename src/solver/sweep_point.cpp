@@ -33,7 +33,7 @@ ShotPipeline pipeline_for(const SweepScene& scene, const PipelineSettings& setti
 void shoot_from(ShotPipeline& pipeline, std::uint32_t shooter) {
     for (;;) {
         pipeline.set_shooter(shooter);
-        shoot(pipeline, 1);
+        shoot(pipeline);
         if (pipeline.shot().status != kBinsFull) return;
         pipeline.enlarge_lists();
     }

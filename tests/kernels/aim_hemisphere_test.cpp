@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/vec2.hpp>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -33,15 +34,19 @@ class AimHemisphere {
     Frame operator()(int patch, int samples, int part) {
         device::Shot shot{};
         shot.patch = patch;
+        shot.part = static_cast<std::uint32_t>(part);
         shot.status = kRunning;
-        shot = aimed(shot, samples, part);
+        shot = aimed(shot, samples);
+        EXPECT_EQ(shot.part, static_cast<std::uint32_t>(part + 1));
+        EXPECT_EQ(shot.part_count, static_cast<std::uint32_t>(samples * samples));
         return {vector_of(shot.origin), vector_of(shot.u_axis), vector_of(shot.v_axis),
                 vector_of(shot.normal)};
     }
-    device::Shot aimed(const device::Shot& shot, int samples, int part) {
+    device::Shot aimed(const device::Shot& shot, int samples) {
         auto plural = run_.plural(std::vector{shot});
         run_.issue({1, 1}, plural, run_.plural(arrays_.corners), run_.plural(arrays_.normals),
-                   std::int32_t(arrays_.stride), std::int32_t(samples), std::int32_t(part));
+                   std::int32_t(arrays_.stride),
+                   run_.plural(std::vector<std::int32_t>(arrays_.stride, samples)));
         return run_.acu().unload(plural).front();
     }
 
@@ -172,12 +177,20 @@ TEST(AimHemisphere, OriginIsTheCentroidOfThatPartOfATriangleOfThreeOrFourCorners
     }
 }
 
-TEST(AimHemisphere, TheFrameIsRightHandedAndTurnedAgainstTheFirstEdgeByTheGoldenSlope) {
+// Multiples of 1/p and 1/p^2 with p^3 = p + 1, from 15 to 75 degrees.
+double expected_angle(int patch, int part) {
+    const double p = 1.3247179572447460;
+    const double turn = (patch + 1) / p + part / (p * p);
+    return (1.0 / 12 + (turn - std::floor(turn)) / 3) * std::numbers::pi;
+}
+
+TEST(AimHemisphere, TheFrameIsRightHandedAndEveryHemisphereTurnsItOtherwise) {
     const auto arrays = random_patches(50, 4, 5);
     AimHemisphere aim(arrays);
 
     for (int patch = 0; patch < 50; ++patch) {
-        const auto frame = aim(patch, 1, 0);
+        const int part = patch % 9;
+        const auto frame = aim(patch, 3, part);
 
         const auto edge = corner(arrays, patch, 1) - corner(arrays, patch, 0);
         const auto normal = normal_of(arrays, patch);
@@ -189,7 +202,7 @@ TEST(AimHemisphere, TheFrameIsRightHandedAndTurnedAgainstTheFirstEdgeByTheGolden
         const auto along = glm::normalize(edge);
         const double slope =
             glm::dot(frame.u_axis, glm::cross(frame.normal, along)) / glm::dot(frame.u_axis, along);
-        EXPECT_NEAR(slope, (std::sqrt(5.0) - 1) / 2, 1e-5);
+        EXPECT_NEAR(std::atan(slope), expected_angle(patch, part), 1e-5);
     }
 }
 
@@ -199,7 +212,7 @@ TEST(AimHemisphere, AHaltedShotKeepsItsFrame) {
     halted.status = kBinsFull;
     halted.origin[0] = 7;
 
-    const auto shot = AimHemisphere(arrays).aimed(halted, 1, 0);
+    const auto shot = AimHemisphere(arrays).aimed(halted, 1);
 
     EXPECT_EQ(shot.origin[0], 7.0f);
     EXPECT_EQ(shot.normal[2], 0.0f);

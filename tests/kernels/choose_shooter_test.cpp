@@ -9,7 +9,8 @@
 namespace hemirad::test {
 namespace {
 
-constexpr float kPerProxel = 1.0f / 1000;
+constexpr std::int32_t kDiskProxels = 250;
+constexpr std::uint32_t kParts = 4;
 
 // What choose_shooter reads: a shot that found its patches, in blocks.
 struct Books {
@@ -35,7 +36,10 @@ Books random_books(std::size_t blocks, std::size_t bands) {
     books.shot.status = kRunning;
     books.shot.patch = 3;
     books.shot.shots = 41;
-    books.shot.least_proxels = std::numeric_limits<std::uint32_t>::max();
+    books.shot.part = books.shot.part_count = kParts;
+    books.shot.shot_limit = std::numeric_limits<std::uint32_t>::max();
+    books.shot.least_surplus = std::numeric_limits<std::int32_t>::max();
+    books.shot.most_surplus = std::numeric_limits<std::int32_t>::min();
     for (std::size_t block = 0; block < blocks; ++block) {
         books.summaries.push_back(
             {unit(random), static_cast<std::int32_t>(block * kReduceBlock + 32), 10});
@@ -68,7 +72,7 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         run.issue({1, GetParam()}, shot, run.plural(books.summaries),
                   run.plural(books.block_unshot), std::int32_t(books.summaries.size()),
                   run.plural(books.unshot), std::int32_t(books.stride()), run.plural(books.weight),
-                  books.tolerance, kPerProxel, proxel_count, escaped, flux);
+                  books.tolerance, kDiskProxels, proxel_count, escaped, flux);
         Books result = books;
         result.shot = run.acu().unload(shot).front();
         result.escaped = run.acu().unload(escaped);
@@ -135,11 +139,12 @@ TEST_P(ChooseShooter, TheBooksOfTheShotAreClosed) {
 
     EXPECT_EQ(after.shot.shots, 42u);
     EXPECT_EQ(after.shot.escaped_proxels, 40u);
-    EXPECT_EQ(after.shot.least_proxels, 340u);
-    EXPECT_EQ(after.shot.most_proxels, 340u);
+    EXPECT_EQ(after.shot.least_surplus, 340 - 1000);
+    EXPECT_EQ(after.shot.most_surplus, 340 - 1000);
+    EXPECT_EQ(after.shot.part, 0u);
     for (std::size_t band = 0; band < 2; ++band) {
         // Two-sum is exact: sum and rest together are the sum in double precision.
-        const float flux = books.flux[band] * (40 * kPerProxel);
+        const float flux = books.flux[band] * (40 * (1.0f / (kDiskProxels * kParts)));
         EXPECT_EQ(double{after.escaped[band]} + after.escaped[2 + band],
                   double{books.escaped[band]} + flux);
     }
@@ -156,9 +161,31 @@ TEST_P(ChooseShooter, BeforeTheFirstShotThereAreNoBooksToClose) {
     const auto after = closed(books);
 
     EXPECT_EQ(after.shot.shots, 0u);
-    EXPECT_EQ(after.shot.most_proxels, 0u);
+    EXPECT_EQ(after.shot.most_surplus, books.shot.most_surplus);
     EXPECT_EQ(after.escaped[0], 0.0f);
     EXPECT_GE(after.shot.patch, 0);
+}
+
+TEST_P(ChooseShooter, NothingIsClosedBeforeTheShootersLastHemisphere) {
+    auto books = random_books(30, 1);
+    books.shot.part = kParts - 1;
+    books.escaped_count = 40;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.shots, books.shot.shots);
+    EXPECT_EQ(after.shot.patch, books.shot.patch);
+    EXPECT_EQ(after.shot.part, kParts - 1);
+    EXPECT_EQ(counts_[books.stride()], 40);
+}
+
+TEST_P(ChooseShooter, ItPausesAtTheLimitOfShots) {
+    auto books = random_books(30, 1);
+
+    books.shot.shot_limit = 43;
+    EXPECT_EQ(closed(books).shot.status, kRunning);
+    books.shot.shot_limit = 42;
+    EXPECT_EQ(closed(books).shot.status, kPaused);
 }
 
 TEST_P(ChooseShooter, ItConvergesBelowTheToleranceAndNotAtIt) {

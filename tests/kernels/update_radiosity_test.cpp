@@ -17,7 +17,8 @@ struct State {
     std::vector<float> shot_flux, received, rest, unshot, reflectance, weight;
     std::vector<std::int32_t> counts;
     std::int32_t shooter = 0, status = kRunning;
-    float per_proxel = 1.0f / 3209;
+    std::int32_t disk_proxels = 3209;
+    std::uint32_t part = 4, part_count = 4;
 };
 
 struct Outcome {
@@ -51,8 +52,9 @@ State random_state(std::size_t bands) {
 // the reflected part to what is unshot, of which the shooter has none left.
 void add_flux(State& state, std::size_t band, std::size_t patch) {
     const std::size_t at = band * kStride + patch;
-    const float flux =
-        static_cast<float>(state.counts[patch]) * state.per_proxel * state.shot_flux[band];
+    const float flux = static_cast<float>(state.counts[patch]) *
+                       (1.0f / static_cast<float>(state.disk_proxels * state.part_count)) *
+                       state.shot_flux[band];
     const float increment = flux + state.rest[at];
     const float total = state.received[at] + increment;
     const float part = total - state.received[at];
@@ -107,13 +109,15 @@ Outcome updated(const State& state, const Shape& shape) {
     device::Shot shot{};
     shot.patch = state.shooter;
     shot.status = state.status;
+    shot.part = state.part;
+    shot.part_count = state.part_count;
     auto counts = run.plural(state.counts);
     auto received = run.plural(state.received), rest = run.plural(state.rest);
     auto unshot = run.plural(state.unshot);
     auto summaries = run.acu().plural<device::BlockSummary>(kStride / kReduceBlock);
     auto block_unshot = run.acu().plural<float>(kStride / kReduceBlock * state.bands);
     run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
-              run.plural(state.shot_flux), counts, state.per_proxel, std::int32_t(kStride),
+              run.plural(state.shot_flux), counts, state.disk_proxels, std::int32_t(kStride),
               received, rest, unshot, run.plural(state.reflectance), run.plural(state.weight),
               summaries, block_unshot);
     Outcome outcome{state, run.acu().unload(summaries), run.acu().unload(block_unshot)};
@@ -177,15 +181,26 @@ TEST_P(UpdateRadiosity, TheShooterKeepsOnlyWhatItSendsToItself) {
     EXPECT_EQ(updated(state, GetParam()).state.unshot[77], 0.0f);
 }
 
-TEST_P(UpdateRadiosity, AHaltedShotChangesNothing) {
-    auto state = random_state(1);
-    state.status = kBinsFull;
-
-    const auto outcome = updated(state, GetParam());
+void expect_unchanged(const State& state, const Shape& shape) {
+    const auto outcome = updated(state, shape);
 
     EXPECT_EQ(bits(outcome.state.received), bits(state.received));
     EXPECT_EQ(bits(outcome.state.unshot), bits(state.unshot));
     EXPECT_EQ(outcome.state.counts, state.counts);
+}
+
+TEST_P(UpdateRadiosity, AHaltedShotChangesNothing) {
+    auto state = random_state(1);
+    state.status = kBinsFull;
+
+    expect_unchanged(state, GetParam());
+}
+
+TEST_P(UpdateRadiosity, NothingChangesBeforeTheShootersLastHemisphere) {
+    auto state = random_state(1);
+    state.part = 3;
+
+    expect_unchanged(state, GetParam());
 }
 
 }  // namespace

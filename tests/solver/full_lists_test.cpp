@@ -54,7 +54,8 @@ TEST(FullLists, AreRepeatedWithRoomAtFullResolution) {
     shooters.pipeline().enlarge_lists();
     const auto counts = shooters.proxel_counts(0);
     EXPECT_NE(shooters.pipeline().shot().status, kBinsFull);
-    EXPECT_EQ(shooters.pipeline().shot().most_proxels, disk_proxel_count(512));
+    const auto whole = shooters.count(0, 0);
+    EXPECT_EQ(whole.owned + whole.escaped, disk_proxel_count(512));
     EXPECT_EQ(shooters.proxel_counts(0), counts);
 
     const auto solution = after_shots(mesh, settings(512, 1e-3, 3), {});

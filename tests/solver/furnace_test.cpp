@@ -39,7 +39,7 @@ TEST_P(FurnaceBox, IsEquallyBrightEverywhere) {
               static_cast<std::size_t>(6 * GetParam().cells * GetParam().cells));
     const double radiosity = std::numbers::pi / (1 - GetParam().reflectance);
 
-    const Solution solution = solution_of(mesh, settings(128, 1e-5));
+    const Solution solution = solution_of(mesh, settings(512, 1e-5));
 
     EXPECT_TRUE(solution.converged);
     for (const auto& band : solution.radiosity)

@@ -78,7 +78,7 @@ TEST(PaperStatements, AreasCountedFromRectanglesAreThoseTheArrayVisits) {
     pipeline.init_plane();
     for (const std::size_t at : {0u, 7u, 19u}) {
         pipeline.set_shooter(scene.shooters()[at]);
-        project_hemisphere(pipeline, 0);
+        project_hemisphere(pipeline);
         const auto activity = pipeline.activity();
 
         const auto counted =

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -126,26 +127,30 @@ class Shooters {
         std::uint64_t owned = 0, escaped = 0;
     };
     Count count(std::uint32_t patch, std::uint32_t part) {
-        begin(patch);
-        project(part);
-        const auto shot = end();
-        return {shot.most_proxels - shot.escaped_proxels, shot.escaped_proxels};
+        pipeline_.set_shooter(patch, part);
+        project_hemisphere(pipeline_);
+        const auto counts = pipeline_.proxel_counts();
+        const auto owned =
+            std::accumulate(counts.begin(), counts.begin() + arrays_.stride, std::uint64_t{0});
+        const auto escaped = static_cast<std::uint64_t>(counts[arrays_.stride]);
+        pipeline_.clear_counts();
+        return {owned, escaped};
     }
 
     /// Proxels that each patch owns, over all hemispheres of `patch`.
     std::vector<std::int32_t> proxel_counts(std::uint32_t patch) {
-        begin(patch);
-        for (std::uint32_t part = 0; part < part_count(); ++part) project(part);
+        pipeline_.set_shooter(patch);
+        for (std::uint32_t part = 0; part < part_count(); ++part) project_hemisphere(pipeline_);
         auto counts = pipeline_.proxel_counts();
         counts.resize(arrays_.patch_count);
-        end();
+        pipeline_.clear_counts();
         return counts;
     }
 
     /// The frame of a hemisphere as aim_hemisphere makes it, normalised coordinates.
     reference::Shooter frame(std::uint32_t patch, std::uint32_t part) {
-        begin(patch);
-        pipeline_.aim_hemisphere(part);
+        pipeline_.set_shooter(patch, part);
+        pipeline_.aim_hemisphere();
         const auto shot = pipeline_.shot();
         const auto vector = [](const float* v) { return glm::dvec3(v[0], v[1], v[2]); };
         return {vector(shot.origin), vector(shot.normal), vector(shot.u_axis)};
@@ -154,7 +159,7 @@ class Shooters {
     /// F_ij as the device counts it.
     reference::FormFactorMatrix form_factor_matrix() {
         reference::FormFactorMatrix matrix(patch_count());
-        const double proxels = static_cast<double>(pipeline_.disk_proxels());
+        const double proxels = static_cast<double>(pipeline_.disk_proxels() * part_count());
         for (std::uint32_t from = 0; from < patch_count(); ++from) {
             const auto counts = proxel_counts(from);
             for (std::uint32_t to = 0; to < patch_count(); ++to)
@@ -171,21 +176,6 @@ class Shooters {
         result.shooter_samples = samples;
         result.pe_array = request;
         return result;
-    }
-
-    void begin(std::uint32_t patch) {
-        auto shot = pipeline_.shot();
-        shot.patch = static_cast<std::int32_t>(patch);
-        shot.status = kRunning;
-        shot.least_proxels = std::numeric_limits<std::uint32_t>::max();
-        shot.most_proxels = 0;
-        pipeline_.set_shot(shot);
-    }
-    void project(std::uint32_t part) { project_hemisphere(pipeline_, part); }
-    device::Shot end() {
-        pipeline_.update_radiosity();
-        pipeline_.choose_shooter();
-        return pipeline_.shot();
     }
 
     PatchArrays arrays_;

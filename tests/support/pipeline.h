@@ -58,9 +58,13 @@ class Aimed {
 
     void aim(int patch) {
         pipeline_.set_shooter(static_cast<std::uint32_t>(patch));
-        pipeline_.aim_hemisphere(0);
+        pipeline_.aim_hemisphere();
+        patch_ = patch;
     }
-    void project() { project_hemisphere(pipeline_, 0); }
+    void project() {
+        pipeline_.set_shooter(static_cast<std::uint32_t>(patch_));
+        project_hemisphere(pipeline_);
+    }
     /// The frame that aim_hemisphere made.
     reference::Shooter shooter() {
         const auto shot = pipeline_.shot();
@@ -95,6 +99,7 @@ class Aimed {
     std::vector<Polygon> polygons_;
     mp1map::Device device_;
     ShotPipeline pipeline_;
+    int patch_ = 0;
 };
 
 }  // namespace hemirad::test
