@@ -18,16 +18,19 @@ static void close_books(__global Shot* shot, const __global float* shot_flux, ui
     const uint escapes = escaped_count[0];
     const int shot_proxels = disk_proxels * shot->part_count;
     const int surplus = (int)(received_proxels + escapes) - shot_proxels;
-    const float per_proxel = 1.0f / shot_proxels;
+#ifndef FORM_FACTOR_ANALYTIC
+    shot->escaped_fraction = escapes * (1.0f / shot_proxels);
+#endif
     for (int band = 0; band < BANDS; ++band)
         add_escaped(escaped + band, escaped + BANDS + band,
-                    shot_flux[band] * (escapes * per_proxel));
+                    shot_flux[band] * shot->escaped_fraction);
     shot->least_surplus = min(shot->least_surplus, surplus);
     shot->most_surplus = max(shot->most_surplus, surplus);
     shot->escaped_proxels = escapes;
     ++shot->shots;
-    escaped_count[0] = 0;  // of proxels that escaped, then of those outside the disk
-    escaped_count[1] = 0;
+    // Of proxels that escaped, of those outside the disk, and of those that all patches own where
+    // estimate_form_factors has spent the counts.
+    for (int kind = 0; kind < kSpareCounts; ++kind) escaped_count[kind] = 0;
 }
 
 // The more energetic of two, the lower patch of equals. Adds the rest up.
@@ -86,7 +89,8 @@ __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* s
         for (int other = 1; other < REDUCE_PES; ++other)
             merge(summary, left, summary[other], left + other * BANDS);
         if (shot->patch >= 0)
-            close_books(shot, shot_flux, summary[0].proxels, proxel_count + stride, disk_proxels,
+            close_books(shot, shot_flux, summary[0].proxels + proxel_count[stride + 2],
+                        proxel_count + stride, disk_proxels,
                         escaped);
         aim_at(shot, summary[0], left, unshot, stride, band_weight, tolerance, shot_flux);
     }

@@ -3,6 +3,7 @@
 // A PE's activity flag is the sign of every arc (app. A); depth by the true distance (app. A).
 // The loops of sec. 1.5.4 "for each patch, for each area" are exchanged: tiles are independent.
 #include "activity.clh"
+#include "coverage.clh"
 #include "evaluate.clh"
 #include "hemisphere.clh"
 #include "plane.clh"
@@ -33,7 +34,7 @@ static void broadcast(const __global Projection* projections, const __global int
 // rectangle's, and which proxels are evaluated there depends on the array.
 static void project(const __local Projection* patch, int tile, int area_column, int pe,
                     const __global real_v* roots, __local real_v* depth, __local int_v* owner,
-                    Activity* activity) {
+                    Activity* activity, Coverage* coverage) {
     const int column = proxel_column(tile, area_column, pe);
     if (column > last_of(patch->columns) || column + LANES <= first_of(patch->columns)) return;
     const int_v columns = column + LANE_INDEX;
@@ -68,6 +69,7 @@ static void project(const __local Projection* patch, int tile, int area_column, 
         depth[at] = choose_v(nearer, distance, nearest);
         owner[at] = select(owner[at], (int_v)patch->patch, nearer);
         count_useful(activity, inside, root);
+        count_covered(coverage, inside, root);
     }
 }
 
@@ -86,8 +88,8 @@ static void clear_plane(int pe, int escaped, const __global real_v* roots, __loc
 __kernel void project_patches(const __global Shot* shot, const __global real_v* roots,
                               const __global Projection* projections, const __global int* list_end,
                               const __global int* lists, int stack_count, int escaped,
-                              __global int* proxel_count, __global int_v* owners,
-                              __global uint* activity_totals) {
+                              __global int* proxel_count, __global int* covered_count,
+                              __global int_v* owners, __global uint* activity_totals) {
     __local real_v depth[TILE_VECTORS];
     __local int_v owner[TILE_VECTORS];
     __local Projection batch[BROADCAST_PATCHES];
@@ -110,8 +112,11 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
         barrier(CLK_LOCAL_MEM_FENCE);
         for (int k = 0; k < count; ++k) {
             count_visit(&activity, batch + k, tile, pe);
+            Coverage coverage = no_coverage();
             for (int area_column = 0; area_column < AREA_COLUMNS; ++area_column)
-                project(batch + k, tile, area_column, pe, tile_roots, depth, owner, &activity);
+                project(batch + k, tile, area_column, pe, tile_roots, depth, owner, &activity,
+                        &coverage);
+            add_coverage(coverage, batch[k].patch, covered_count);
         }
     }
     add_activity(&activity, activity_totals);

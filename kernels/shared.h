@@ -57,6 +57,8 @@ typedef struct {
     // Closure, of all shots: proxels owned and escaped, less those of the disks; both 0.
     int32_t least_surplus, most_surplus;
     uint32_t escaped_proxels;  // of the last shot
+    // Analytic form factors of the last shot: what closes them, and what escapes.
+    float factor_scale, residual_share, escaped_fraction;
 } Shot;
 
 // Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
@@ -76,9 +78,19 @@ typedef struct {
     uint32_t proxels;
 } BlockSummary;
 
+// Form factors in the making, [kind][patch], sums over the shooter's hemispheres: closed form times
+// visible fraction v, closed form alone, and closed form times v (1 - v).
+#define kVisibleFactor 0
+#define kUnblockedFactor 1
+#define kDoubtfulFactor 2
+#define kFactorKinds 3
+
+// After the patches' proxel counts: see choose_shooter.cl.
+#define kSpareCounts 3
+
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 12);
-static_assert(sizeof(Shot) == 92);
+static_assert(sizeof(Shot) == 104);
 static_assert(sizeof(Projection) == 72);
 }  // namespace hemirad::device
 #endif

@@ -25,8 +25,36 @@ static void shoot_at(const __global Shot* shot, const __global float* shot_flux,
     }
 }
 
+#ifdef FORM_FACTOR_ANALYTIC
+
+// Of LANES patches, closed (spread_residual.cl); the sums are spent.
+static real_v take_form_factors(const __global Shot* shot, __global float* factors, int stride,
+                                int patch) {
+    const real_v visible = load_v(kVisibleFactor * stride + patch, factors);
+    const real_v doubtful = load_v(kDoubtfulFactor * stride + patch, factors);
+    for (int kind = 0; kind < kFactorKinds; ++kind)
+        *real_vectors(factors + kind * stride + patch) = (real_v)0.0f;
+    return fma(doubtful, (real_v)shot->residual_share, visible * shot->factor_scale);
+}
+
+#else
+
+// Proxels of LANES patches over those of the disks; the counts are spent.
+static real_v take_counts(__global int* proxel_count, float per_proxel, int patch,
+                          uint* proxels) {
+    const int_v counts = load_v(patch, proxel_count);
+    if (any_v(counts != 0)) {
+        *int_vectors(proxel_count + patch) = (int_v)0;
+        for (int lane = 0; lane < LANES; ++lane) *proxels += int_lane_of(counts, lane);
+    }
+    return to_real_v(counts) * per_proxel;
+}
+
+#endif
+
 __kernel void update_radiosity(__global Shot* shot, const __global float* shot_flux,
-                               __global int* proxel_count, int disk_proxels, int stride,
+                               __global int* proxel_count, int disk_proxels,
+                               __global float* factors, int stride,
                                __global float* received, __global float* received_rest,
                                __global float* unshot, const __global float* reflectance,
                                const __global float* band_weight,
@@ -41,14 +69,14 @@ __kernel void update_radiosity(__global Shot* shot, const __global float* shot_f
             for (int a = 0; a < ACCUMULATORS; ++a) sums[band][a] = (real_v)0.0f;
         for (int step = 0; step < kReduceBlock / LANES; ++step) {
             const int patch = block * kReduceBlock + step * LANES;
-            const int_v counts = load_v(patch, proxel_count);
-            if (any_v(counts != 0)) {
-                *int_vectors(proxel_count + patch) = (int_v)0;
-                for (int lane = 0; lane < LANES; ++lane)
-                    summary.proxels += int_lane_of(counts, lane);
-            }
-            shoot_at(shot, shot_flux, stride, patch, to_real_v(counts) * per_proxel, received,
-                     received_rest, unshot, reflectance);
+#ifdef FORM_FACTOR_ANALYTIC
+            const real_v form_factor = take_form_factors(shot, factors, stride, patch);
+#else
+            const real_v form_factor =
+                take_counts(proxel_count, per_proxel, patch, &summary.proxels);
+#endif
+            shoot_at(shot, shot_flux, stride, patch, form_factor, received, received_rest, unshot,
+                     reflectance);
             real_v energy = (real_v)0.0f;
             for (int band = 0; band < BANDS; ++band) {
                 const real_v left = load_v(band * stride + patch, unshot);

@@ -33,6 +33,7 @@ cl::Buffer Acu::zeroed(std::size_t bytes) {
 }
 
 void Acu::fill_zero(const cl::Buffer& buffer, std::size_t bytes) {
+    if (bytes == 0) return;
     guarded("clear", [&] { queue_.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes); });
 }
 

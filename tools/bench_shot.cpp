@@ -15,9 +15,7 @@ namespace {
 
 constexpr std::uint32_t kShooters = 64;  // spread evenly over the patches
 
-ShotPipeline pipeline_for(const PatchArrays& patches, std::uint32_t resolution, bool timed) {
-    PipelineSettings settings;
-    settings.resolution = resolution;
+ShotPipeline pipeline_for(const PatchArrays& patches, PipelineSettings settings, bool timed) {
     settings.timed = timed;
     ShotPipeline pipeline(patches, even_light(patches), settings, mp1map::Device::open(""));
     pipeline.init_plane();
@@ -30,15 +28,18 @@ device::Shot shoot_from(ShotPipeline& pipeline, std::uint32_t patch) {
     return pipeline.shot();
 }
 
-void run_shots(benchmark::State& state, const PatchArrays& patches) {
+void run_shots(benchmark::State& state, const PatchArrays& patches, FormFactorMode form_factor) {
     const auto resolution = static_cast<std::uint32_t>(state.range(0));
-    ShotPipeline pipeline = pipeline_for(patches, resolution, false);
+    PipelineSettings settings;
+    settings.resolution = resolution;
+    settings.form_factor = form_factor;
+    ShotPipeline pipeline = pipeline_for(patches, settings, false);
     std::uint32_t shooter = 0;
     const auto next = [&] { return shooter++ % kShooters * (patches.patch_count / kShooters); };
     for (int warm_up = 0; warm_up < 8; ++warm_up) shoot_from(pipeline, next());
     for (auto _ : state) benchmark::DoNotOptimize(shoot_from(pipeline, next()));
 
-    ShotPipeline timed = pipeline_for(patches, resolution, true);
+    ShotPipeline timed = pipeline_for(patches, settings, true);
     for (std::uint32_t i = 0; i < kShooters; ++i) shoot_from(timed, next());
     for (const auto& [name, cost] : timed.acu().kernel_seconds())
         if (name != "init_plane") state.counters[name + "_ms"] = 1e3 * cost.first / kShooters;
@@ -63,11 +64,15 @@ int main(int argc, char** argv) {
     const auto mesh = hemirad::build_mesh(hemirad::read_scene(argv[1]), settings);
     const auto patches = hemirad::patch_arrays(mesh);
     std::fprintf(stderr, "%s: %u patches\n", argv[1], patches.patch_count);
-    benchmark::RegisterBenchmark(
-        "shot", [&](benchmark::State& state) { hemirad::run_shots(state, patches); })
-        ->RangeMultiplier(2)
-        ->Range(128, 2048)
-        ->UseRealTime()
-        ->Unit(benchmark::kMillisecond);
+    for (const auto& [name, mode] : {std::pair{"count", hemirad::FormFactorMode::count},
+                                     std::pair{"analytic", hemirad::FormFactorMode::analytic}})
+        benchmark::RegisterBenchmark(name,
+                                     [&patches, form_factor = mode](benchmark::State& state) {
+                                         hemirad::run_shots(state, patches, form_factor);
+                                     })
+            ->RangeMultiplier(2)
+            ->Range(128, 2048)
+            ->UseRealTime()
+            ->Unit(benchmark::kMillisecond);
     benchmark::RunSpecifiedBenchmarks();
 }

@@ -27,6 +27,16 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     auto& solver = options.solver;
     add_resolution(command, solver.resolution);
     add_shooter_samples(command, solver.shooter_samples);
+    add_value(
+        command,
+        {"--form-factor", "count|analytic",
+         "proxels counted, or closed form times visible fraction [analytic]"},
+        [&](const OptionValue& value) {
+            solver.form_factor = static_cast<FormFactorMode>(one_of(value, {"count", "analytic"}));
+        });
+    add_value(command,
+              {"--sampling-error", "E", "closed forms where one hemisphere errs by more [1e-3]"},
+              [&](const OptionValue& value) { solver.sampling_error = positive_number(value); });
     add_mesh_options(command, options.mesh);
     add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch]"},
               [&](const OptionValue& value) { options.texel_size = positive_number(value); });

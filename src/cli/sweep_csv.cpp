@@ -42,7 +42,7 @@ const std::vector<std::string>& mp1_columns() {
 
 /// Kernels of a shot; the plane is set up once.
 std::vector<std::string> timed_kernels() {
-    std::vector<std::string> names = kernel_names();
+    std::vector<std::string> names = kernel_names(FormFactorMode::count);
     std::erase(names, "init_plane");
     return names;
 }

@@ -42,6 +42,11 @@ std::string definition(const char* name, std::uint64_t value) {
 
 std::string flag(const char* name, bool set) { return set ? std::string(" -D") + name : ""; }
 
+// Sub-proxel patches ask for the owner of the proxel they lie in.
+bool needs_owners(const PipelineSettings& settings) {
+    return settings.keep_owners || settings.form_factor == FormFactorMode::analytic;
+}
+
 std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution,
                           std::uint32_t corner_count, std::size_t bands,
                           const PipelineSettings& settings) {
@@ -56,7 +61,8 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            flag("DISTANCE_CONSTANT", settings.variants.constant_distance) +
            flag("ACCUMULATE_XNET", settings.variants.xnet) +
            flag("COUNT_ACTIVITY", settings.count_activity) +
-           flag("KEEP_OWNERS", settings.keep_owners);
+           flag("FORM_FACTOR_ANALYTIC", settings.form_factor == FormFactorMode::analytic) +
+           flag("KEEP_OWNERS", needs_owners(settings));
 }
 
 std::vector<std::int32_t> samples_of(const PipelineSettings& settings, std::uint32_t stride) {
@@ -91,10 +97,15 @@ device::Shot first_shot() {
 
 }  // namespace
 
-const std::vector<std::string>& kernel_names() {
-    static const std::vector<std::string> names = {
-        "init_plane", "aim_hemisphere", "cull_patches",    "set_up_projection", "count_areas",
-        "prefix_sum", "bin_areas",      "project_patches", "update_radiosity",  "choose_shooter"};
+std::vector<std::string> kernel_names(FormFactorMode mode) {
+    std::vector<std::string> names = {"init_plane",        "aim_hemisphere", "cull_patches",
+                                      "set_up_projection", "count_areas",    "prefix_sum",
+                                      "bin_areas",         "project_patches"};
+    if (mode == FormFactorMode::analytic)
+        for (const char* name :
+             {"estimate_form_factors", "correct_near_pairs", "add_up_factors", "spread_residual"})
+            names.emplace_back(name);
+    names.insert(names.end(), {"update_radiosity", "choose_shooter"});
     return names;
 }
 
@@ -153,6 +164,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       stack_count_(array_.array_count * array_.pe_count()),
       depth_(stack_depth(stride_, stack_count_)),
       disk_proxels_(disk_proxel_count(resolution_)),
+      mode_(settings.form_factor),
       tolerance_(static_cast<float>(settings.tolerance)),
       samples_(samples_of(settings, stride_)) {
     require_countable(disk_proxels_, resolution_, samples_);
@@ -167,9 +179,9 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     projections_ = acu_.plural<device::Projection>(std::size_t{stack_count_} * depth_);
     list_end_ = acu_.plural<std::int32_t>(std::size_t{tile_count_} * stack_count_);
     lists_ = acu_.plural<std::int32_t>(list_capacity(stride_));
-    proxel_count_ = acu_.plural<std::int32_t>(stride_ + 2);
-    owners_ = acu_.plural<std::int32_t>(settings.keep_owners ? roots_.size() : 0);
-
+    proxel_count_ = acu_.plural<std::int32_t>(stride_ + kSpareCounts);
+    owners_ = acu_.plural<std::int32_t>(needs_owners(settings) ? roots_.size() : 0);
+    load_near_pairs(settings.near_pairs);
     activity_ = acu_.plural<std::uint32_t>(kActivityCounters);
 
     const std::size_t states = band_count_ * stride_;
@@ -190,10 +202,23 @@ void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSet
     const std::string options =
         build_options(array_, resolution_, corner_count, band_count_, settings);
     std::string source;
-    for (const auto& name : kernel_names()) source += kernel_source(name, settings.kernels_dir);
-    kernels_ = mp1map::build_kernels(device, kernel_names(), source, options);
+    const auto names = kernel_names(mode_);
+    for (const auto& name : names) source += kernel_source(name, settings.kernels_dir);
+    kernels_ = mp1map::build_kernels(device, names, source, options);
     build_seconds_ =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void ShotPipeline::load_near_pairs(const NearPairs& pairs) {
+    const std::size_t used = mode_ == FormFactorMode::analytic ? stride_ : 0;
+    covered_count_ = acu_.plural<std::int32_t>(used);
+    factors_ = acu_.plural<float>(kFactorKinds * used);
+    factor_block_sums_ = acu_.plural<float>(2 * used / kReduceBlock);
+    std::vector<std::int32_t> begin = pairs.begin;
+    begin.resize(used + 1, begin.empty() ? 0 : begin.back());
+    near_begin_ = acu_.plural(begin);
+    near_patch_ = acu_.plural(pairs.patch);
+    near_factor_ = acu_.plural(pairs.form_factor);
 }
 
 mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.at(name); }
@@ -237,13 +262,35 @@ void ShotPipeline::bin_areas() {
 void ShotPipeline::project_patches() {
     acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, list_end_,
                lists_, std::int32_t(stack_count_), std::int32_t(escaped_owner()), proxel_count_,
-               owners_, activity_);
+               covered_count_, owners_, activity_);
+}
+
+void ShotPipeline::estimate_form_factors() {
+    acu_.issue(kernel("estimate_form_factors"), stack_grid(), shot_, corners_, normals_,
+               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, owners_,
+               proxel_count_, covered_count_, factors_);
+}
+
+void ShotPipeline::correct_near_pairs() {
+    acu_.issue(kernel("correct_near_pairs"), {1, kReducePes}, shot_, near_begin_, near_patch_,
+               near_factor_, std::int32_t(stride_), factors_);
+}
+
+void ShotPipeline::add_up_factors() {
+    acu_.issue(kernel("add_up_factors"), stack_grid(), shot_, factors_, std::int32_t(stride_),
+               factor_block_sums_);
+}
+
+void ShotPipeline::spread_residual() {
+    acu_.issue(kernel("spread_residual"), {1, kReducePes}, shot_, factor_block_sums_,
+               std::int32_t(summaries_.size()), proxel_count_, std::int32_t(stride_),
+               std::int32_t(disk_proxels_));
 }
 
 void ShotPipeline::update_radiosity() {
     acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               std::int32_t(disk_proxels_), std::int32_t(stride_), received_, received_rest_,
-               unshot_, reflectance_, band_weight_, summaries_, block_unshot_);
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), received_,
+               received_rest_, unshot_, reflectance_, band_weight_, summaries_, block_unshot_);
 }
 
 void ShotPipeline::choose_shooter() {
@@ -311,7 +358,11 @@ std::vector<double> ShotPipeline::escaped() {
 
 std::vector<std::int32_t> ShotPipeline::proxel_counts() { return acu_.unload(proxel_count_); }
 
-void ShotPipeline::clear_counts() { acu_.clear(proxel_count_); }
+void ShotPipeline::clear_counts() {
+    acu_.clear(proxel_count_);
+    acu_.clear(covered_count_);
+    acu_.clear(factors_);
+}
 
 Activity ShotPipeline::activity() {
     const auto totals = acu_.unload(activity_);

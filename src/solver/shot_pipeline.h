@@ -11,6 +11,7 @@
 #include "kernels/shared.h"
 #include "mp1map/acu.h"
 #include "mp1map/pe_array.h"
+#include "solver/near_pairs.h"
 #include "solver/patch_arrays.h"
 
 namespace hemirad {
@@ -21,6 +22,12 @@ struct Variants {
     bool incremental = false;        ///< sec. 1.6: further areas by summing deltas
     bool constant_distance = false;  ///< app. A: Spencer's one distance a patch
     bool xnet = false;               ///< sec. 1.5.4: form factors gathered over the X-net
+};
+
+/// How a hemisphere's proxels become form factors.
+enum class FormFactorMode {
+    count,     ///< proxels owned over those of the disk (sec. 1.5.4)
+    analytic,  ///< closed form times the visible fraction of the patch's proxels
 };
 
 /// What fig. 1.4b counts, of the last shot.
@@ -34,6 +41,8 @@ struct PipelineSettings {
     std::uint32_t resolution = 512;
     std::uint32_t shooter_samples = 1;        ///< M x M hemispheres a patch,
     std::vector<std::int32_t> patch_samples;  ///< [patch] unless these are given
+    FormFactorMode form_factor = FormFactorMode::count;
+    NearPairs near_pairs;  ///< for FormFactorMode::analytic; may be empty
     double tolerance = 1e-3;
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;
@@ -70,6 +79,10 @@ class ShotPipeline {
     void prefix_sum();
     void bin_areas();
     void project_patches();
+    void estimate_form_factors();
+    void correct_near_pairs();
+    void add_up_factors();
+    void spread_residual();
     void update_radiosity();
     void choose_shooter();
 
@@ -94,6 +107,7 @@ class ShotPipeline {
     Activity activity();                            ///< since the last call; count_activity
     std::vector<device::Projection> projections();  ///< of the last shot, in patch order
 
+    FormFactorMode mode() const { return mode_; }
     std::uint64_t disk_proxels() const { return disk_proxels_; }  ///< of one hemisphere
     std::uint32_t part_count(std::uint32_t patch) const;          ///< hemispheres of a patch
     const mp1map::PeArray& pe_array() const { return array_; }
@@ -107,6 +121,7 @@ class ShotPipeline {
     mp1map::Kernel& kernel(const std::string& name);
     void build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
                        std::uint32_t corner_count);
+    void load_near_pairs(const NearPairs& pairs);
     mp1map::Grid stack_grid() const;
     mp1map::Grid tile_grid() const;
 
@@ -119,6 +134,7 @@ class ShotPipeline {
     std::size_t band_count_;
     std::uint32_t tile_count_, stack_count_, depth_;
     std::uint64_t disk_proxels_;
+    FormFactorMode mode_;
     float tolerance_;
     std::vector<std::int32_t> samples_;  // [patch]
 
@@ -128,6 +144,8 @@ class ShotPipeline {
     mp1map::Plural<std::int32_t> stack_, stack_height_;
     mp1map::Plural<device::Projection> projections_;
     mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;
+    mp1map::Plural<std::int32_t> covered_count_, near_begin_, near_patch_;
+    mp1map::Plural<float> near_factor_, factors_, factor_block_sums_;
     mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
     mp1map::Plural<std::uint32_t> activity_;
@@ -135,7 +153,7 @@ class ShotPipeline {
 };
 
 /// The files of kernels/ that a pipeline is made of, in the order of a shot.
-const std::vector<std::string>& kernel_names();
+std::vector<std::string> kernel_names(FormFactorMode mode);
 
 /// Proxels whose centre lies in the disk (sec. 1.3.2), of resolution^2.
 std::uint64_t disk_proxel_count(std::uint32_t resolution);

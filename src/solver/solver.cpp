@@ -32,10 +32,25 @@ PatchLight patch_light(const Mesh& mesh, const BandPlan& plan, std::uint32_t str
     return light;
 }
 
-PipelineSettings pipeline_settings(const SolverSettings& settings) {
+// Beyond, what cannot be told from the mesh (what hides what) errs more than nearness does.
+constexpr std::int32_t kMostAutomaticSamples = 8;
+
+// Counting needs more hemispheres where patches are near; analytic factors have closed forms.
+void set_shooter_sampling(PipelineSettings& pipeline, const Mesh& mesh,
+                          const SolverSettings& settings) {
+    pipeline.shooter_samples = std::max(1u, settings.shooter_samples);
+    if (settings.form_factor == FormFactorMode::analytic)
+        pipeline.near_pairs = near_pairs(mesh, settings.sampling_error);
+    else if (settings.shooter_samples == 0)
+        pipeline.patch_samples =
+            shooter_samples_for(mesh, settings.sampling_error, kMostAutomaticSamples);
+}
+
+PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& settings) {
     PipelineSettings result;
     result.resolution = settings.resolution;
-    result.shooter_samples = settings.shooter_samples;
+    result.form_factor = settings.form_factor;
+    set_shooter_sampling(result, mesh, settings);
     result.tolerance = settings.tolerance;
     result.pe_array = settings.pe_array;
     result.variants = settings.variants;
@@ -48,7 +63,7 @@ ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSe
                           const mp1map::Device& device) {
     const PatchArrays patches = patch_arrays(mesh);
     return ShotPipeline(patches, patch_light(mesh, plan, patches.stride),
-                        pipeline_settings(settings), device);
+                        pipeline_settings(mesh, settings), device);
 }
 
 }  // namespace
@@ -75,10 +90,18 @@ void project_hemisphere(ShotPipeline& pipeline) {
     pipeline.prefix_sum();
     pipeline.bin_areas();
     pipeline.project_patches();
+    if (pipeline.mode() == FormFactorMode::analytic) pipeline.estimate_form_factors();
+}
+
+void close_form_factors(ShotPipeline& pipeline) {
+    pipeline.correct_near_pairs();
+    pipeline.add_up_factors();
+    pipeline.spread_residual();
 }
 
 void shoot(ShotPipeline& pipeline) {
     project_hemisphere(pipeline);
+    if (pipeline.mode() == FormFactorMode::analytic) close_form_factors(pipeline);
     pipeline.update_radiosity();
     pipeline.choose_shooter();
 }

@@ -19,9 +19,14 @@
 namespace hemirad {
 
 struct SolverSettings {
-    std::uint32_t resolution = 512;     ///< N x N proxels on the square around the disk, 16 to 8192
-    std::uint32_t shooter_samples = 1;  ///< M x M hemispheres a shooting patch
-    double tolerance = 1e-3;            ///< stop where unshot / emitted is below, in every band
+    std::uint32_t resolution = 512;  ///< N x N proxels on the square around the disk, 16 to 8192
+    std::uint32_t shooter_samples =
+        0;  ///< M x M hemispheres a shooting patch; 0: see sampling_error
+    FormFactorMode form_factor = FormFactorMode::analytic;
+    /// What a near pair's factor may lack for the shooter being a few points: where it would be
+    /// more, counting gets more hemispheres, and analytic factors come from polygon to polygon.
+    double sampling_error = 1e-3;
+    double tolerance = 1e-3;  ///< stop where unshot / emitted is below, in every band
     std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
     double time_limit = std::numeric_limits<double>::infinity();  ///< s
     /// Calls back whenever the shots reach a multiple of this, besides a few times a second; 0:
@@ -41,6 +46,9 @@ struct Progress {
 
 /// What the next of the shooter's hemispheres sees is counted.
 void project_hemisphere(ShotPipeline& pipeline);
+
+/// FormFactorMode::analytic: the shooter's factors from all its hemispheres add up to 1.
+void close_form_factors(ShotPipeline& pipeline);
 
 /// One pass of the loop of sec. 1.5.4: one hemisphere of the shooter that the pipeline has chosen
 /// and, if it was the last one, what it shoots and who shoots next.

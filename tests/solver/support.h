@@ -89,6 +89,8 @@ inline SolverSettings settings(std::uint32_t resolution, double tolerance = 1e-3
                                std::uint64_t max_shots = kAnyShots) {
     SolverSettings result;
     result.resolution = resolution;
+    result.shooter_samples = 1;
+    result.form_factor = FormFactorMode::count;
     result.tolerance = tolerance;
     result.max_shots = max_shots;
     return result;

@@ -1,0 +1,203 @@
+#include "solver/near_pairs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <map>
+#include <numbers>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include "formfactor/polygon_factors.h"
+
+namespace hemirad {
+namespace {
+
+constexpr double kErrorOfCentre = 0.1;  // times the factor and (radius / distance)^2
+constexpr double kLarge = 4;            // times the median radius: not kept in cells
+
+struct Body {
+    std::array<glm::dvec3, 4> corners;
+    glm::dvec3 centre, normal;
+    double area, radius;
+};
+
+std::vector<Body> bodies_of(const Mesh& mesh) {
+    std::vector<Body> bodies;
+    for (const Patch& patch : mesh.patches) {
+        Body body{{}, mesh.centroid(patch), mesh.normal(patch), mesh.area(patch), 0};
+        for (std::size_t k = 0; k < 4; ++k) {
+            body.corners[k] = mesh.vertices[patch.corners[k]];
+            body.radius = std::max(body.radius, glm::distance(body.corners[k], body.centre));
+        }
+        bodies.push_back(body);
+    }
+    return bodies;
+}
+
+// Largest cosine under which a point sees one of the corners, against its own normal.
+double largest_cosine(const glm::dvec3& from, const glm::dvec3& normal, const Body& to) {
+    double largest = 0;
+    for (const glm::dvec3& corner : to.corners) {
+        const double distance = glm::distance(corner, from);
+        if (distance > 0) largest = std::max(largest, glm::dot(normal, corner - from) / distance);
+    }
+    return largest;
+}
+
+double error_of_centre(const Body& shooter, const Body& receiver) {
+    const double cosines = largest_cosine(shooter.centre, shooter.normal, receiver) *
+                           largest_cosine(receiver.centre, receiver.normal, shooter);
+    if (cosines <= 0) return 0;
+    const double distance = std::max(
+        glm::distance(shooter.centre, receiver.centre) - receiver.radius, 0.5 * shooter.radius);
+    const double squared = distance * distance;
+    const double factor = std::min(1.0, shooter.area * cosines / (std::numbers::pi * squared));
+    return kErrorOfCentre * factor * shooter.radius * shooter.radius / squared;
+}
+
+// Beyond, error_of_centre is below `error`.
+double reach(const Body& shooter, double error) {
+    return std::sqrt(shooter.radius *
+                     std::sqrt(kErrorOfCentre * shooter.area / (std::numbers::pi * error)));
+}
+
+/// Bodies by the cubic cells that their centres lie in; large ones in a list of their own.
+class Cells {
+  public:
+    Cells(std::span<const Body> bodies, double error) : bodies_(bodies), error_(error) {
+        const double radius = median([](const Body& body) { return body.radius; });
+        largest_kept_ = kLarge * radius;
+        edge_ = std::max(median([&](const Body& body) { return reach(body, error); }), radius);
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            (bodies[i].radius > largest_kept_ ? large_ : cells_[cell_of(bodies[i].centre)])
+                .push_back(i);
+    }
+
+    /// Calls with every body that a hemisphere at the shooter's centre may be wrong about.
+    template <class Visit>
+    void visit_near(std::size_t shooter, const Visit& visit) const {
+        const auto consider = [&](std::size_t receiver) {
+            const double wrong = error_of_centre(bodies_[shooter], bodies_[receiver]);
+            if (receiver != shooter && wrong > error_) visit(receiver, wrong);
+        };
+        std::ranges::for_each(large_, consider);
+        const glm::dvec3 far(reach(bodies_[shooter], error_) + largest_kept_);
+        const Cell first = cell_of(bodies_[shooter].centre - far);
+        const Cell last = cell_of(bodies_[shooter].centre + far);
+        for_each_cell(first, last, [&](const std::vector<std::size_t>& cell) {
+            std::ranges::for_each(cell, consider);
+        });
+    }
+
+  private:
+    using Cell = std::array<std::int64_t, 3>;
+
+    double median(const std::function<double(const Body&)>& of) const {
+        std::vector<double> values;
+        for (const Body& body : bodies_) values.push_back(of(body));
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    }
+    Cell cell_of(const glm::dvec3& point) const {
+        const glm::dvec3 cell = glm::floor(point / edge_);
+        return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
+                static_cast<std::int64_t>(cell.z)};
+    }
+    template <class Visit>
+    void for_each_cell(const Cell& first, const Cell& last, const Visit& visit) const {
+        // Wider than all there is: each cell once.
+        if (static_cast<double>(last[0] - first[0]) * static_cast<double>(last[1] - first[1]) >
+            static_cast<double>(cells_.size())) {
+            for (const auto& [at, bodies] : cells_) visit(bodies);
+            return;
+        }
+        for (std::int64_t x = first[0]; x <= last[0]; ++x)
+            for (std::int64_t y = first[1]; y <= last[1]; ++y) {
+                const auto end = cells_.upper_bound({x, y, last[2]});
+                for (auto cell = cells_.lower_bound({x, y, first[2]}); cell != end; ++cell)
+                    visit(cell->second);
+            }
+    }
+
+    std::span<const Body> bodies_;
+    double error_, edge_ = 1, largest_kept_ = 0;
+    std::map<Cell, std::vector<std::size_t>> cells_;
+    std::vector<std::size_t> large_;
+};
+
+using Pair = std::pair<std::size_t, std::size_t>;  // the lower patch first
+
+std::vector<Pair> pairs_of(std::span<const Body> bodies, double error) {
+    const Cells cells(bodies, error);
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        cells.visit_near(i, [&](std::size_t j, double) { pairs.push_back(std::minmax(i, j)); });
+    std::ranges::sort(pairs);
+    const auto repeated = std::ranges::unique(pairs);
+    pairs.erase(repeated.begin(), repeated.end());
+    return pairs;
+}
+
+// Area of the first times its factor to the second.
+std::vector<double> exchange_areas(std::span<const Body> bodies, std::span<const Pair> pairs) {
+    std::vector<double> result(pairs.size());
+    const std::size_t thread_count = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<std::jthread> threads;
+    for (std::size_t first = 0; first < thread_count; ++first)
+        threads.emplace_back([&, first] {
+            for (std::size_t i = first; i < pairs.size(); i += thread_count) {
+                const Body &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
+                result[i] = a.area * polygon_to_polygon(a.corners, b.corners);
+            }
+        });
+    threads.clear();  // waits
+    return result;
+}
+
+}  // namespace
+
+NearPairs near_pairs(const Mesh& mesh, double error) {
+    const auto bodies = bodies_of(mesh);
+    const auto pairs = pairs_of(bodies, error);
+    const auto exchange = exchange_areas(bodies, pairs);
+
+    NearPairs near;
+    near.begin.assign(bodies.size() + 1, 0);
+    for (const auto& [a, b] : pairs) ++near.begin[a + 1], ++near.begin[b + 1];
+    for (std::size_t i = 0; i < bodies.size(); ++i) near.begin[i + 1] += near.begin[i];
+    near.patch.resize(2 * pairs.size());
+    near.form_factor.resize(2 * pairs.size());
+    std::vector<std::int32_t> end(near.begin.begin(), near.begin.end() - 1);
+    const auto put = [&](std::size_t from, std::size_t to, double exchanged) {
+        const auto at = static_cast<std::size_t>(end[from]++);
+        near.patch[at] = static_cast<std::int32_t>(to);
+        near.form_factor[at] = static_cast<float>(exchanged / bodies[from].area);
+    };
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        put(pairs[i].first, pairs[i].second, exchange[i]);
+        put(pairs[i].second, pairs[i].first, exchange[i]);
+    }
+    return near;
+}
+
+std::vector<std::int32_t> shooter_samples_for(const Mesh& mesh, double error, std::int32_t most) {
+    const auto bodies = bodies_of(mesh);
+    const Cells cells(bodies, error);
+    std::vector<std::int32_t> samples;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        double largest = error;
+        cells.visit_near(i, [&](std::size_t, double wrong) { largest = std::max(largest, wrong); });
+        const double needed = std::ceil(std::sqrt(largest / error));
+        samples.push_back(static_cast<std::int32_t>(std::min<double>(needed, most)));
+    }
+    return samples;
+}
+
+}  // namespace hemirad
