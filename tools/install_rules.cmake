@@ -29,7 +29,7 @@ set(public_headers
     errors.h
     scene/mesh.h scene/read_scene.h scene/scene.h
     formfactor/form_factors.h
-    solver/bands.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h solver/solver.h
+    solver/bands.h solver/near_pairs.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h solver/solver.h
     solver/view_factors.h
     lightmap/atomic_file.h lightmap/chart_layout.h lightmap/lightmap.h lightmap/rasterize.h
     lightmap/write_exr.h lightmap/write_faces.h lightmap/write_preview.h)

@@ -27,12 +27,25 @@ struct Body {
     double area, radius;
 };
 
+// A power of two, so that a scene scaled by one has factors of the same bits.
+double scale_of(const Mesh& mesh) {
+    double largest = 0;
+    for (const glm::dvec3& vertex : mesh.vertices)
+        largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
+    return largest > 0 ? std::exp2(-std::ilogb(largest)) : 1;
+}
+
 std::vector<Body> bodies_of(const Mesh& mesh) {
+    const double scale = scale_of(mesh);
     std::vector<Body> bodies;
     for (const Patch& patch : mesh.patches) {
-        Body body{{}, mesh.centroid(patch), mesh.normal(patch), mesh.area(patch), 0};
+        Body body{{},
+                  scale * mesh.centroid(patch),
+                  mesh.normal(patch),
+                  scale * scale * mesh.area(patch),
+                  0};
         for (std::size_t k = 0; k < 4; ++k) {
-            body.corners[k] = mesh.vertices[patch.corners[k]];
+            body.corners[k] = scale * mesh.vertices[patch.corners[k]];
             body.radius = std::max(body.radius, glm::distance(body.corners[k], body.centre));
         }
         bodies.push_back(body);
@@ -40,22 +53,38 @@ std::vector<Body> bodies_of(const Mesh& mesh) {
     return bodies;
 }
 
-// Largest cosine under which a point sees one of the corners, against its own normal.
+// Of the disk around the receiver, in its plane.
+glm::dvec3 nearest_point(const Body& receiver, const glm::dvec3& to) {
+    const glm::dvec3 foot = to - glm::dot(to - receiver.centre, receiver.normal) * receiver.normal;
+    const double away = glm::distance(foot, receiver.centre);
+    if (away <= receiver.radius) return foot;
+    return receiver.centre + receiver.radius / away * (foot - receiver.centre);
+}
+
+// Largest cosine under which a point sees a corner or the nearest point, against its own normal.
 double largest_cosine(const glm::dvec3& from, const glm::dvec3& normal, const Body& to) {
     double largest = 0;
-    for (const glm::dvec3& corner : to.corners) {
-        const double distance = glm::distance(corner, from);
-        if (distance > 0) largest = std::max(largest, glm::dot(normal, corner - from) / distance);
-    }
+    const auto include = [&](const glm::dvec3& point) {
+        const double distance = glm::distance(point, from);
+        if (distance > 0) largest = std::max(largest, glm::dot(normal, point - from) / distance);
+    };
+    std::ranges::for_each(to.corners, include);
+    include(nearest_point(to, from));
     return largest;
 }
 
+bool in_front(const Body& body, const Body& of) {
+    return std::ranges::any_of(body.corners, [&](const glm::dvec3& corner) {
+        return glm::dot(of.normal, corner - of.centre) > 0;
+    });
+}
+
 double error_of_centre(const Body& shooter, const Body& receiver) {
+    if (!in_front(shooter, receiver) || !in_front(receiver, shooter)) return 0;
+    const glm::dvec3 nearest = nearest_point(receiver, shooter.centre);
+    const double distance = std::max(glm::distance(shooter.centre, nearest), 0.5 * shooter.radius);
     const double cosines = largest_cosine(shooter.centre, shooter.normal, receiver) *
-                           largest_cosine(receiver.centre, receiver.normal, shooter);
-    if (cosines <= 0) return 0;
-    const double distance = std::max(
-        glm::distance(shooter.centre, receiver.centre) - receiver.radius, 0.5 * shooter.radius);
+                           largest_cosine(nearest, receiver.normal, shooter);
     const double squared = distance * distance;
     const double factor = std::min(1.0, shooter.area * cosines / (std::numbers::pi * squared));
     return kErrorOfCentre * factor * shooter.radius * shooter.radius / squared;

@@ -364,6 +364,8 @@ void ShotPipeline::clear_counts() {
     acu_.clear(factors_);
 }
 
+std::vector<float> ShotPipeline::factors() { return acu_.unload(factors_); }
+
 Activity ShotPipeline::activity() {
     const auto totals = acu_.unload(activity_);
     acu_.clear(activity_);

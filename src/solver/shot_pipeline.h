@@ -101,6 +101,9 @@ class ShotPipeline {
     /// Of the hemispheres since the last shot; after the patches' (stride()) those that escaped.
     std::vector<std::int32_t> proxel_counts();
     void clear_counts();
+    /// Of the hemispheres since the last shot, [kind * stride() + patch], kinds as kVisibleFactor;
+    /// FormFactorMode::analytic.
+    std::vector<float> factors();
     /// Owner of proxel row * resolution + column; patch_count() + padding: escaped. keep_owners.
     std::vector<std::int32_t> owners();
     std::int32_t escaped_owner() const { return static_cast<std::int32_t>(stride_); }

@@ -64,7 +64,7 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         options.reduce_pes = GetParam();
         KernelRun run("choose_shooter", options);
         auto shot = run.plural(std::vector{books.shot});
-        std::vector<std::int32_t> counts(books.stride() + 2, 0);
+        std::vector<std::int32_t> counts(books.stride() + kSpareCounts, 0);
         counts[books.stride()] = books.escaped_count;
         counts[books.stride() + 1] = 5;  // outside the disk
         auto proxel_count = run.plural(counts);

@@ -117,9 +117,9 @@ Outcome updated(const State& state, const Shape& shape) {
     auto summaries = run.acu().plural<device::BlockSummary>(kStride / kReduceBlock);
     auto block_unshot = run.acu().plural<float>(kStride / kReduceBlock * state.bands);
     run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
-              run.plural(state.shot_flux), counts, state.disk_proxels, std::int32_t(kStride),
-              received, rest, unshot, run.plural(state.reflectance), run.plural(state.weight),
-              summaries, block_unshot);
+              run.plural(state.shot_flux), counts, state.disk_proxels, run.acu().plural<float>(1),
+              std::int32_t(kStride), received, rest, unshot, run.plural(state.reflectance),
+              run.plural(state.weight), summaries, block_unshot);
     Outcome outcome{state, run.acu().unload(summaries), run.acu().unload(block_unshot)};
     outcome.state.counts = run.acu().unload(counts);
     outcome.state.received = run.acu().unload(received);

@@ -23,7 +23,7 @@ Seen seen(const PipelineSettings& settings, const Shape& shape, std::uint32_t re
     aimed.aim(0);
     aimed.project();
     auto counts = aimed.pipeline().proxel_counts();
-    counts.pop_back();  // beyond the disk: nobody asks
+    counts.resize(aimed.pipeline().stride() + 1);  // beyond the disk: nobody asks
     return {aimed.owners(), counts,
             settings.count_activity ? aimed.pipeline().activity() : Activity{}};
 }

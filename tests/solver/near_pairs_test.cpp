@@ -1,0 +1,59 @@
+#include "solver/near_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include "reference/closed_forms.h"
+#include "support/patches.h"
+
+namespace hemirad::test {
+namespace {
+
+const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0);
+
+// A floor, a ceiling at the same size above it, one far away, and one that turns its back.
+Mesh floor_and_ceilings() {
+    return mesh_of({square({0, 0, 0}, kX, kY, 1), square({0, 0, 1}, kY, kX, 1),
+                    square({0, 0, 50}, kY, kX, 1), square({0, 0, -0.8}, kY, kX, 1)});
+}
+
+TEST(NearPairs, HoldTheClosedFormBothWays) {
+    const auto near = near_pairs(floor_and_ceilings(), 1e-3);
+
+    EXPECT_EQ(near.begin, (std::vector<std::int32_t>{0, 1, 2, 2, 2}));
+    EXPECT_EQ(near.patch, (std::vector<std::int32_t>{1, 0}));
+    const double expected = reference::parallel_rectangles(1, 1, 1);
+    for (const float factor : near.form_factor) EXPECT_NEAR(factor, expected, 1e-7);
+}
+
+TEST(NearPairs, ReachFartherForASmallerError) {
+    const auto mesh = mesh_of(box({1, 1, 1}, 6));
+    std::size_t before = 0;
+    for (const double error : {1e-2, 1e-3, 1e-4, 1e-9}) {
+        const auto pairs = near_pairs(mesh, error).patch.size();
+        EXPECT_GT(pairs, before);
+        before = pairs;
+    }
+    EXPECT_EQ(before, 6u * 36 * 5 * 36);  // all that do not lie in one plane
+}
+
+TEST(NearPairs, FindALargeReceiverOfSmallShooters) {
+    std::vector<Polygon> polygons = {square({0, 0, 0}, kX, kY, 100)};
+    for (int i = 0; i < 20; ++i) polygons.push_back(square({2.0 * i, 0, 0.1}, kY, kX, 0.1));
+
+    const auto near = near_pairs(mesh_of(polygons), 1e-3);
+
+    for (int i = 1; i <= 20; ++i) EXPECT_EQ(near.begin[i + 1] - near.begin[i], 1) << i;
+}
+
+TEST(ShooterSamples, AreManyOnlyWhereSomethingIsNear) {
+    const auto samples = shooter_samples_for(floor_and_ceilings(), 1e-3, 8);
+
+    EXPECT_GE(samples[0], 4);
+    EXPECT_EQ(samples[0], samples[1]);
+    EXPECT_EQ(samples[2], 1);
+    EXPECT_EQ(samples[3], 1);
+    for (const auto most : shooter_samples_for(floor_and_ceilings(), 1e-9, 8)) EXPECT_LE(most, 8);
+}
+
+}  // namespace
+}  // namespace hemirad::test
