@@ -7,10 +7,12 @@ namespace hemirad {
 namespace {
 
 /// Of the sum of a row; sums of doubles are no better.
-constexpr double kClosure = 1e-13;
-constexpr int kGradientSteps = 400;
-/// Newton steps without half as much lacking, after which nothing more is to be had.
-constexpr int kIdleSteps = 8;
+constexpr double kClosure = 1e-13, kNearClosure = 1e-6;
+constexpr int kRefinements = 6;
+/// A tenth of both is enough but where most factors are wrong, or none hold the laws.
+constexpr int kNewtonSteps = 30, kGradientSteps = 200;
+
+constexpr double kDamping = 1e-8;  // of the curvature
 
 /// A symmetric G_ij = A_i F_ij = A_j F_ji, m^2: what was found, and the variance of that.
 struct Pair {
@@ -134,17 +136,29 @@ struct Slope {
     }
 };
 
+void add_diagonal(const std::vector<Pair>& pairs, std::vector<double>& diagonal) {
+    for (const Pair& pair : pairs) {
+        diagonal[pair.i] += pair.variance;
+        if (pair.i != pair.j) diagonal[pair.j] += pair.variance;
+    }
+}
+
+/// Levenberg 1944: where too much has become 0 for the rows to move one by one, they still do.
+void damp(const Dual& dual, Slope& slope) {
+    std::vector<double> of_all = dual.outside_variance;
+    add_diagonal(dual.pairs, of_all);
+    for (std::size_t i = 0; i < of_all.size(); ++i) slope.outside[i] += kDamping * of_all[i];
+}
+
 Slope slope_of(const Dual& dual) {
     Slope slope;
     for (const Pair& pair : dual.pairs)
         if (value(dual, pair) > 0) slope.pairs.push_back(pair);
     for (std::size_t i = 0; i < dual.area.size(); ++i)
         slope.outside.push_back(outside_value(dual, i) > 0 ? dual.outside_variance[i] : 0);
+    damp(dual, slope);
     slope.diagonal = slope.outside;
-    for (const Pair& pair : slope.pairs) {
-        slope.diagonal[pair.i] += pair.variance;
-        if (pair.i != pair.j) slope.diagonal[pair.j] += pair.variance;
-    }
+    add_diagonal(slope.pairs, slope.diagonal);
     return slope;
 }
 
@@ -196,14 +210,26 @@ bool go(Dual& dual, const std::vector<double>& step, std::vector<double>& lack) 
 
 void maximise(Dual& dual) {
     auto lack = lacks(dual);
-    double least = largest_lack(dual, lack);
-    for (int idle = 0; least > kClosure && idle < kIdleSteps; ++idle) {
+    for (int i = 0; largest_lack(dual, lack) > kClosure && i < kNewtonSteps; ++i) {
         const auto step = newton_step(slope_of(dual), lack);
         if (!(dot(lack, step) > 0) || !go(dual, step, lack)) return;
-        const double now = largest_lack(dual, lack);
-        if (now < least / 2) idle = -1;
-        least = std::min(least, now);
     }
+}
+
+/// Starts anew from where the multipliers have led: where they are large, sums of them are not
+/// precise to kClosure. What is 0 stays so once the rows are nearly right.
+void refine(Dual& dual) {
+    const bool is_near = largest_lack(dual, lacks(dual)) < kNearClosure;
+    for (Pair& pair : dual.pairs) {
+        pair.found = value(dual, pair);
+        if (is_near && pair.found == 0) pair.variance = 0;
+    }
+    for (std::size_t i = 0; i < dual.outside.size(); ++i) {
+        dual.outside[i] = outside_value(dual, i);
+        if (is_near && dual.outside[i] == 0) dual.outside_variance[i] = 0;
+    }
+    std::ranges::fill(dual.multiplier, 0);
+    maximise(dual);
 }
 
 void put(FormFactors& factors, std::uint32_t row, std::uint32_t to, const Pair& pair, double g) {
@@ -215,7 +241,8 @@ void put(FormFactors& factors, std::uint32_t row, std::uint32_t to, const Pair& 
 void put_back(const Dual& dual, FormFactors& factors) {
     for (auto& row : factors.rows) row.clear();
     for (const Pair& pair : dual.pairs) {
-        const double g = value(dual, pair);
+        // More than all of a patch is only asked for where the laws cannot be held.
+        const double g = std::min({value(dual, pair), factors.area[pair.i], factors.area[pair.j]});
         put(factors, pair.i, pair.j, pair, g);
         if (pair.i != pair.j) put(factors, pair.j, pair.i, pair, g);
     }
@@ -229,6 +256,8 @@ void put_back(const Dual& dual, FormFactors& factors) {
 void enforce(FormFactors& factors) {
     Dual dual = dual_of(factors);
     maximise(dual);
+    for (int i = 0; i < kRefinements && largest_lack(dual, lacks(dual)) > kClosure; ++i)
+        refine(dual);
     put_back(dual, factors);
 }
 

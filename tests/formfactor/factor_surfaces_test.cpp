@@ -97,8 +97,10 @@ TEST(NamedSurfaces, ObstructionsAreNeitherRowsNorColumns) {
 }
 
 TEST(NamedSurfaces, TheEmittanceIsTheMeanOverBandsAndArea) {
-    EXPECT_THAT(named(tiles({{0, 1}, {0, 1}, {0, 0}, {1, 2}})).emittance,
-                ElementsAre(DoubleEq(2.0 / 3), DoubleEq(0.3)));
+    Scene scene = tiles({{0, 1}, {0, 1}, {0, 0}, {1, 2}});
+    scene.positions[10].y = scene.positions[11].y = 3;  // the black one
+
+    EXPECT_THAT(named(scene).emittance, ElementsAre(DoubleEq((0.5 + 0.5 + 3) / 5), DoubleEq(0.3)));
 }
 
 TEST(SinglePatches, AreNumberedFrom0) {
@@ -132,6 +134,17 @@ TEST(Gathered, SumsOverWhatReceivesAndAveragesOverWhatSends) {
     EXPECT_EQ(sums.rows[1].size(), 1u);
     EXPECT_THAT(sums.outside, ElementsAre(DoubleEq(0.25 * 0.4 + 0.75 * 0.9), DoubleEq(0.7)));
     EXPECT_FLOAT_EQ(sums.rows[0][1].error, 0.25F * 0.02F + 0.75F * 0.03F);
+}
+
+TEST(Gathered, RowsAreInOrderOfTheSurfaces) {
+    FactorSurfaces turned = two_and_one();
+    turned.of_patch = {1, 1, 0};
+    const FormFactors factors{{2}, {{{0, 0, 0.1}, {2, 0, 0.2}}}, {0.7}, {1, 3, 2}};
+
+    const FormFactors sums = gathered(factors, turned);
+
+    EXPECT_DOUBLE_EQ(sums.at(0, 0), 0.2);
+    EXPECT_DOUBLE_EQ(sums.at(0, 1), 0.1);
 }
 
 TEST(Gathered, SurfacesWithoutRowsHaveNone) {

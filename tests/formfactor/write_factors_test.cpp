@@ -81,6 +81,14 @@ TEST(WriteView3d, AnEnclosureIsMarked) {
               "View3D 3.3.1 0 1 0 2          \n1 2\n0 1\n0.5 0.5\n1 1\n");
 }
 
+TEST(WriteView3d, WhatGoesToBlockersLeavesTheEnclosureOpen) {
+    FormFactors closed = factors();
+    closed.outside = {0, 0, 0};
+
+    EXPECT_EQ(written([&](auto& out) { write_view3d(out, closed, surfaces()); }).substr(0, 19),
+              "View3D 3.3.1 0 0 0 ");
+}
+
 TEST(WriteView3dSparse, ALineAFactor) {
     EXPECT_EQ(written([](auto& out) { write_view3d_sparse(out, factors(), surfaces()); }),
               "View3D 3.3.1 2 0 0 2          \n"

@@ -62,11 +62,11 @@ TEST_F(ReadVs3, SurfacesAreFacesNamedAndGrey) {
 TEST_F(ReadVs3, BlanksCommasCommentsAndCaseDoNotMatter) {
     const Scene scene = read(
         "! a comment\r\n/ another\r\n\r\nt title of * ! / words\r\nf 3\r\nv,1,0.,0,0 ! here too\r\n"
-        "v\t2 1 .5e1 0\r\n  v 3 0 1. +2\r\ns 1 1 2 3 0 0 0 1 y=0\r\ne\r\nnothing of this is read");
+        "v\t2 1 .5e1 0\r\n  v 3 0 1. +2\r\ns 1 1 2 3 0 0 0 1 /y=0\r\ne\r\nnothing of this is read");
 
     EXPECT_THAT(corners_of(scene, 0),
                 ElementsAre(glm::dvec3(0, 0, 0), glm::dvec3(1, 5, 0), glm::dvec3(0, 1, 2)));
-    EXPECT_THAT(scene.objects, ElementsAre("y=0"));
+    EXPECT_THAT(scene.objects, ElementsAre("/y=0"));
 }
 
 TEST_F(ReadVs3, AStarEndsItToo) {
@@ -120,6 +120,14 @@ TEST_F(ReadVs3, ASubsurfaceAtTheEdgeLeavesNoSlivers) {
 
     EXPECT_EQ(scene.faces.size(), 4u);  // left, right and above the door, and the door
     EXPECT_DOUBLE_EQ(area_of(scene, 0), 5);
+}
+
+TEST_F(ReadVs3, RoundingLeavesNoSliversEither) {
+    const Scene scene = read(
+        "F 3a\nS 1 R 0 0 0.9 wall\n 0.1 0.7 0.3  33 70  3 2\n"
+        "S 2 Q 1 0 0.9 door\n 0.1 0.7 0.3  33 70  0.7 0  1.3 0  1.3 1  0.7 1\n");
+
+    EXPECT_EQ(scene.faces.size(), 4u);
 }
 
 TEST_F(ReadVs3, ANullSurfaceIsAHole) {
