@@ -28,6 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The finest of tradeoff's patches over those of solve, so that the many solves end in minutes.
+constexpr double kDefaultScale = 4;
+
 struct TradeoffOptions {
     fs::path scene, output = "tradeoff.csv";
     MeshSettings mesh;
@@ -60,7 +63,7 @@ std::string title(const SolvePoint& point, double patch_size) {
 
 MeshSettings mesh_settings(const TradeoffOptions& options, const Scene& scene) {
     MeshSettings settings = options.mesh;
-    if (settings.patch_size == 0) settings.patch_size = default_patch_size(scene) * 2;
+    if (settings.patch_size == 0) settings.patch_size = kDefaultScale * default_patch_size(scene);
     return settings;
 }
 

@@ -54,41 +54,59 @@ std::vector<std::uint32_t> spread_shooters(const Mesh& mesh, std::uint32_t count
     return shooters;
 }
 
-PipelineSettings pipeline_settings(const FactorPoint& point) {
+PipelineSettings pipeline_settings(const FactorPoint& point, const Mesh& mesh) {
     PipelineSettings settings;
     settings.resolution = point.resolution;
     settings.shooter_samples = point.shooter_samples;
     settings.variants.constant_distance = point.method == Method::constant_distance;
+    if (point.method == Method::analytic) {
+        settings.form_factor = FormFactorMode::analytic;
+        settings.near_pairs = near_pairs(mesh, SolverSettings{}.sampling_error);
+    }
     return settings;
 }
 
-FactorRow device_row(ShotPipeline& pipeline, std::uint32_t shooter, std::uint32_t parts,
-                     std::size_t patch_count) {
+/// As update_radiosity.cl takes them.
+std::vector<double> device_factors(ShotPipeline& pipeline, double proxels, std::size_t count) {
+    std::vector<double> values;
+    if (pipeline.mode() == FormFactorMode::count) {
+        for (const std::int32_t owned : pipeline.proxel_counts()) values.push_back(owned / proxels);
+    } else {
+        const auto shot = pipeline.shot();
+        const auto sums = pipeline.factors();
+        for (std::size_t patch = 0; patch < count; ++patch)
+            values.push_back(shot.factor_scale * sums[kVisibleFactor * pipeline.stride() + patch] +
+                             shot.residual_share *
+                                 sums[kDoubtfulFactor * pipeline.stride() + patch]);
+    }
+    values.resize(count);
+    return values;
+}
+
+FactorRow device_row(ShotPipeline& pipeline, std::uint32_t shooter, std::size_t patch_count) {
     for (;;) {
+        const std::uint32_t parts = pipeline.part_count(shooter);
         pipeline.set_shooter(shooter);
-        for (std::uint32_t part = 0; part < parts; ++part) project_hemisphere(pipeline, part);
-        const auto counts = pipeline.proxel_counts();
-        pipeline.update_radiosity();
-        pipeline.choose_shooter();
+        for (std::uint32_t part = 0; part < parts; ++part) project_hemisphere(pipeline);
+        if (pipeline.mode() == FormFactorMode::analytic) close_form_factors(pipeline);
         if (pipeline.shot().status == kBinsFull) {
             pipeline.enlarge_lists();
             continue;
         }
-        FactorRow row{{}, static_cast<double>(pipeline.disk_proxels())};
-        for (std::size_t patch = 0; patch < patch_count; ++patch)
-            row.values.push_back(counts[patch] / row.samples);
+        FactorRow row{{}, static_cast<double>(pipeline.disk_proxels() * parts)};
+        row.values = device_factors(pipeline, row.samples, patch_count);
+        pipeline.clear_counts();
         return row;
     }
 }
 
-RowMaker on_device(const FactorPoint& point, const PatchArrays& arrays,
-                   const mp1map::Device& device) {
+RowMaker on_device(const FactorPoint& point, const Mesh& mesh, const mp1map::Device& device) {
+    const PatchArrays arrays = patch_arrays(mesh);
     const auto pipeline = std::make_shared<ShotPipeline>(arrays, even_light(arrays),
-                                                         pipeline_settings(point), device);
+                                                         pipeline_settings(point, mesh), device);
     pipeline->init_plane();
-    const std::uint32_t parts = point.shooter_samples * point.shooter_samples;
-    return [=, count = arrays.patch_count](std::uint32_t shooter) {
-        return device_row(*pipeline, shooter, parts, count);
+    return [pipeline, count = arrays.patch_count](std::uint32_t shooter) {
+        return device_row(*pipeline, shooter, count);
     };
 }
 
@@ -175,8 +193,8 @@ double median(std::vector<double> values) {
 
 FactorRows::FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_error,
                        const mp1map::Device& device)
-    : device_(device),
-      arrays_(patch_arrays(mesh)),
+    : mesh_(mesh),
+      device_(device),
       polygons_(polygons_of(mesh)),
       shooters_(spread_shooters(mesh, shooters)) {
     FactorPoint finest;
@@ -191,8 +209,8 @@ FactorRows::FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_er
 
 FactorMeasurement FactorRows::measure(const FactorPoint& point) const {
     const RowMaker make_row = point.method == Method::monte_carlo ? by_rays(point, polygons_)
-                              : point.runs_on == RunsOn::device ? on_device(point, arrays_, device_)
-                                                                : on_host(point, polygons_);
+                              : point.runs_on == RunsOn::device   ? on_device(point, mesh_, device_)
+                                                                  : on_host(point, polygons_);
     make_row(shooters_.front());  // the first call builds and warms up
     FactorMeasurement measurement;
     ErrorSums sums;

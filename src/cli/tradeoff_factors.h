@@ -7,7 +7,6 @@
 #include "mp1map/device.h"
 #include "reference/polygon.h"
 #include "scene/mesh.h"
-#include "solver/patch_arrays.h"
 
 namespace hemirad {
 
@@ -27,7 +26,8 @@ struct FactorMeasurement {
 /// Factors from some patches of a mesh, by one method after another.
 class FactorRows {
   public:
-    /// Finds the truth for `shooters` fronts, evenly spread over the mesh, to within `truth_error`.
+    /// Keeps a reference to the mesh. Finds the truth for `shooters` fronts, evenly spread over the
+    /// mesh, to within `truth_error`.
     FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_error,
                const mp1map::Device& device);
 
@@ -35,8 +35,8 @@ class FactorRows {
     std::size_t row_count() const { return shooters_.size(); }
 
   private:
+    const Mesh& mesh_;
     const mp1map::Device& device_;
-    PatchArrays arrays_;
     std::vector<reference::Polygon> polygons_;
     std::vector<std::uint32_t> shooters_;
     std::vector<std::vector<double>> truth_;  ///< [row][patch]

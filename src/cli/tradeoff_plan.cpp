@@ -19,7 +19,7 @@ void add_on_device(std::vector<FactorPoint>& points, const Numbers& resolutions,
                    const Numbers& samples) {
     for (const std::uint32_t m : samples)
         for (const std::uint32_t n : resolutions)
-            for (const Method method : {Method::count, Method::constant_distance})
+            for (const Method method : {Method::count, Method::analytic, Method::constant_distance})
                 points.push_back(projected(method, RunsOn::device, n, m));
 }
 
@@ -50,7 +50,9 @@ void add_solves(std::vector<SolvePoint>& points, const std::vector<double>& patc
                 const Numbers& resolutions, const Numbers& samples) {
     for (const double scale : patch_scales)
         for (const std::uint32_t n : resolutions) {
-            for (const std::uint32_t m : samples) points.push_back({Method::count, n, m, scale});
+            for (const std::uint32_t m : samples)
+                for (const Method method : {Method::count, Method::analytic})
+                    points.push_back({method, n, m, scale});
             points.push_back({Method::constant_distance, n, 1, scale});
         }
 }
@@ -61,6 +63,8 @@ std::string name_of(Method method) {
     switch (method) {
         case Method::count:
             return "count";
+        case Method::analytic:
+            return "analytic";
         case Method::constant_distance:
             return "constant_distance";
         case Method::hemicube:
@@ -83,7 +87,7 @@ TradeoffPlan tradeoff_plan() {
     // Planes that 8, 1.6 and 0.4 % of what leaves the shooter pass by.
     add_on_host(plan.factors, {32, 64, 128, 256, 512, 1024}, {1, 2, 4}, {3, 7, 15});
     add_rays(plan.factors, 1 << 10, 1 << 20);
-    plan.finest = {Method::count, 1024, 8, 1};
+    plan.finest = {Method::analytic, 1024, 8, 1};
     add_solves(plan.solves, {4, 2, 1}, {64, 128, 256, 512, 1024}, {1, 2, 4});
     return plan;
 }
@@ -95,7 +99,7 @@ TradeoffPlan quick_tradeoff_plan() {
     add_on_device(plan.factors, {32, 128}, {1, 2});
     add_on_host(plan.factors, {32, 128}, {1, 2}, {7});
     add_rays(plan.factors, 1 << 10, 1 << 14);
-    plan.finest = {Method::count, 256, 4, 1};
+    plan.finest = {Method::analytic, 256, 4, 1};
     add_solves(plan.solves, {2, 1}, {32, 128}, {1, 2});
     return plan;
 }

@@ -6,7 +6,7 @@
 
 namespace hemirad {
 
-enum class Method { count, constant_distance, hemicube, single_plane, monte_carlo };
+enum class Method { count, analytic, constant_distance, hemicube, single_plane, monte_carlo };
 enum class RunsOn { device, host };  ///< OpenCL, or one thread in double precision
 
 std::string name_of(Method method);

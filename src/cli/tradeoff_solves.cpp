@@ -74,6 +74,8 @@ SolverSettings solver_settings(const SolvePoint& point) {
     SolverSettings settings;
     settings.resolution = point.resolution;
     settings.shooter_samples = point.shooter_samples;
+    settings.form_factor =
+        point.method == Method::analytic ? FormFactorMode::analytic : FormFactorMode::count;
     settings.tolerance = kTolerance;
     settings.variants.constant_distance = point.method == Method::constant_distance;
     return settings;

@@ -40,7 +40,6 @@ class Solves {
 
     SolveMeasurement measure(const SolvePoint& point);
     std::size_t patch_count(double patch_scale) { return level(patch_scale).mesh.patches.size(); }
-    double patch_size(double patch_scale) const { return finest_mesh_.patch_size * patch_scale; }
 
   private:
     struct Level {

@@ -25,15 +25,15 @@ struct Planes {
     float least_height;
 };
 
-// Back faces hide nothing, nor what the ray's origin is in the plane of: the ray goes on.
+// Back faces hide nothing, nor what the ray's origin is in the plane of: the ray goes on. Met from
+// above its plane, a polygon shows its front.
 void reject_unseen(const RTCFilterFunctionNArguments* arguments) {
     const auto& seen = *static_cast<const Planes*>(arguments->geometryUserPtr);
     const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
     const auto& [normal, offset] = seen.planes[hit.primID];
-    const bool faces = glm::dot(normal, {ray.dir_x, ray.dir_y, ray.dir_z}) < 0;
     const float height = glm::dot(normal, {ray.org_x, ray.org_y, ray.org_z}) - offset;
-    if (!faces || height <= seen.least_height) arguments->valid[0] = 0;
+    if (height <= seen.least_height) arguments->valid[0] = 0;
 }
 
 Planes planes_of(std::span<const Polygon> polygons) {
