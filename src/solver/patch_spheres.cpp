@@ -1,0 +1,130 @@
+#include "solver/patch_spheres.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <span>
+
+namespace hemirad {
+namespace {
+
+constexpr std::size_t kGroup = 8;
+
+PatchShape shape_of(const Mesh& mesh, const Patch& patch) {
+    PatchShape shape;
+    const int corner_count = patch.is_triangle() ? 3 : 4;
+    for (int k = 0; k < corner_count; ++k) shape.corners.push_back(mesh.vertices[patch.corners[k]]);
+    shape.normal = mesh.normal(patch);
+    shape.area = mesh.area(patch);
+    shape.centre = mesh.centroid(patch);
+    shape.radius = 0;
+    for (const glm::dvec3& corner : shape.corners)
+        shape.radius = std::max(shape.radius, glm::distance(corner, shape.centre));
+    return shape;
+}
+
+double height(const PatchShape& plane, const PatchShape& sphere) {
+    return glm::dot(plane.normal, sphere.centre - plane.centre);
+}
+
+// Turns its front to a part of `a`, has a part of `b` behind it, and reaches in front of both.
+bool faces(const PatchShape& patch, const PatchShape& a, const PatchShape& b) {
+    return height(patch, a) > -a.radius && height(patch, b) < b.radius &&
+           height(a, patch) > -patch.radius && height(b, patch) > -patch.radius;
+}
+
+// Around the bounding spheres of two patches.
+class Capsule {
+  public:
+    Capsule(const PatchShape& a, const PatchShape& b)
+        : start_(a.centre), along_(b.centre - a.centre), radius_(std::max(a.radius, b.radius)) {
+        const double squared = glm::dot(along_, along_);
+        inverse_ = squared > 0 ? 1 / squared : 0;
+    }
+
+    bool touches(const glm::dvec3& centre, double radius) const {
+        const glm::dvec3 gap = centre - start_;
+        const double t = std::clamp(glm::dot(gap, along_) * inverse_, 0.0, 1.0);
+        const glm::dvec3 across = gap - t * along_;
+        const double reach = radius_ + radius;
+        return glm::dot(across, across) <= reach * reach;
+    }
+
+  private:
+    glm::dvec3 start_, along_;
+    double radius_, inverse_;
+};
+
+// Halves the longest side of the patches' extent until groups are left.
+void sort_in_space(const std::vector<PatchShape>& patches, std::span<std::uint32_t> order) {
+    if (order.size() <= kGroup) return;
+    glm::dvec3 least = patches[order[0]].centre, most = least;
+    for (const std::uint32_t patch : order) {
+        least = glm::min(least, patches[patch].centre);
+        most = glm::max(most, patches[patch].centre);
+    }
+    const glm::dvec3 size = most - least;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::size_t half = (order.size() / 2 + kGroup - 1) / kGroup * kGroup;
+    const auto middle = order.begin() + std::ptrdiff_t(half);
+    std::nth_element(order.begin(), middle, order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        const double a = patches[i].centre[axis], b = patches[j].centre[axis];
+        return a != b ? a < b : i < j;
+    });
+    sort_in_space(patches, order.first(half));
+    sort_in_space(patches, order.subspan(half));
+}
+
+std::vector<std::uint32_t> near_neighbours(const std::vector<PatchShape>& patches) {
+    std::vector<std::uint32_t> order(patches.size());
+    std::iota(order.begin(), order.end(), 0u);
+    sort_in_space(patches, order);
+    return order;
+}
+
+Sphere around(const std::vector<PatchShape>& patches, std::span<const std::uint32_t> group) {
+    glm::dvec3 sum(0);
+    for (const std::uint32_t patch : group) sum += patches[patch].centre;
+    Sphere sphere{sum / double(group.size()), 0};
+    for (const std::uint32_t patch : group)
+        sphere.radius =
+            std::max(sphere.radius,
+                     glm::distance(patches[patch].centre, sphere.centre) + patches[patch].radius);
+    return sphere;
+}
+
+}  // namespace
+
+std::vector<PatchShape> patch_shapes(const Mesh& mesh) {
+    std::vector<PatchShape> shapes;
+    for (const Patch& patch : mesh.patches) shapes.push_back(shape_of(mesh, patch));
+    return shapes;
+}
+
+PatchSpheres::PatchSpheres(const std::vector<PatchShape>& patches)
+    : patches_(patches), order_(near_neighbours(patches)) {
+    for (std::size_t begin = 0; begin < order_.size(); begin += kGroup)
+        groups_.push_back(around(
+            patches, std::span(order_).subspan(begin, std::min(kGroup, order_.size() - begin))));
+}
+
+void PatchSpheres::between(std::uint32_t from, std::uint32_t to,
+                           std::vector<ConvexPolygon>& blockers) const {
+    blockers.clear();
+    const PatchShape &a = patches_[from], &b = patches_[to];
+    const Capsule capsule(a, b);
+    for (std::size_t group = 0; group < groups_.size(); ++group) {
+        if (!capsule.touches(groups_[group].centre, groups_[group].radius)) continue;
+        const std::size_t end = std::min(order_.size(), (group + 1) * kGroup);
+        for (std::size_t at = group * kGroup; at < end; ++at) {
+            const PatchShape& patch = patches_[order_[at]];
+            if (capsule.touches(patch.centre, patch.radius) && faces(patch, a, b) &&
+                order_[at] != from && order_[at] != to)
+                blockers.push_back(patch.corners);
+        }
+    }
+}
+
+}  // namespace hemirad

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "formfactor/polygon_factors.h"
+#include "scene/mesh.h"
+
+namespace hemirad {
+
+/// A patch for closed forms: in double precision, with its bounding sphere.
+struct PatchShape {
+    ConvexPolygon corners;
+    glm::dvec3 normal, centre;
+    double radius, area;
+};
+
+std::vector<PatchShape> patch_shapes(const Mesh& mesh);
+
+struct Sphere {
+    glm::dvec3 centre;
+    double radius;
+};
+
+/// Bounding spheres of all patches, in groups of neighbours.
+class PatchSpheres {
+  public:
+    /// Keeps a reference.
+    explicit PatchSpheres(const std::vector<PatchShape>& patches);
+
+    /// Patches that reach into the capsule around two of them and may hide a part of the second
+    /// from the first. `blockers` is overwritten.
+    void between(std::uint32_t from, std::uint32_t to, std::vector<ConvexPolygon>& blockers) const;
+
+  private:
+    const std::vector<PatchShape>& patches_;
+    std::vector<std::uint32_t> order_;  ///< neighbours next to each other
+    std::vector<Sphere> groups_;
+};
+
+}  // namespace hemirad
