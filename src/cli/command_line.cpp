@@ -4,6 +4,7 @@
 
 #include "cli/devices.h"
 #include "cli/exit_codes.h"
+#include "cli/formfactors.h"
 #include "cli/info.h"
 #include "cli/solve.h"
 #include "cli/sweep.h"
@@ -40,6 +41,7 @@ CommandLine::CommandLine()
     app_.allow_extras();
     app_.get_formatter()->column_width(34);
     add_solve(app_, chosen_);
+    add_formfactors(app_, chosen_);
     add_info(app_, chosen_);
     add_devices(app_, chosen_);
     add_sweep(app_, chosen_);
