@@ -150,10 +150,13 @@ Blockers blockers_between(const Pair& pair, std::span<const ConvexPolygon> candi
     for (const ConvexPolygon& candidate : candidates) {
         Blocker blocker{candidate, formfactor::plane_of(candidate)};
         if (blocker.plane.normal == glm::dvec3(0)) continue;
-        if (shaft.effect(blocker) == Effect::none) continue;
-        blocker.corners = without_repeats(
-            formfactor::in_front(pair.to_plane, candidate, pair.margin), pair.margin);
-        const Effect effect = shaft.effect(blocker);
+        Effect effect = shaft.effect(blocker);
+        if (effect == Effect::none) continue;
+        if (any_above(reversed(pair.to_plane), candidate, 0)) {
+            blocker.corners = formfactor::in_front(pair.to_plane, candidate, pair.margin);
+            effect = shaft.effect(blocker);
+        }
+        blocker.corners = without_repeats(blocker.corners, pair.margin);
         blockers.total |= effect == Effect::total;
         if (effect == Effect::partial) blockers.partial.push_back(blocker);
     }

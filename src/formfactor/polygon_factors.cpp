@@ -126,14 +126,13 @@ double polygon_to_polygon(std::span<const glm::dvec3> from, std::span<const glm:
     const ConvexPolygon source = moved(from, -from[0]), target = moved(to, -from[0]);
     const Plane source_plane = formfactor::plane_of(source);
     const Plane target_plane = formfactor::plane_of(target);
-    const double area = formfactor::area(source);
-    if (area == 0 || formfactor::area(target) == 0) return 0;
     const double margin = kCoplanar * (formfactor::reach(source) + formfactor::reach(target) +
                                        glm::length(target[0]));
     const ConvexPolygon seeing = formfactor::in_front(target_plane, source, margin);
     const ConvexPolygon seen = formfactor::in_front(source_plane, target, margin);
     if (seeing.size() < 3 || seen.size() < 3) return 0;
-    return std::clamp(exchange(seeing, source_plane, seen, target_plane) / area, 0.0, 1.0);
+    return std::clamp(exchange(seeing, source_plane, seen, target_plane) / formfactor::area(source),
+                      0.0, 1.0);
 }
 
 }  // namespace hemirad

@@ -30,7 +30,7 @@ double height(const PatchShape& plane, const PatchShape& sphere) {
 }
 
 // Turns its front to a part of `a`, has a part of `b` behind it, and reaches in front of both.
-bool faces(const PatchShape& patch, const PatchShape& a, const PatchShape& b) {
+bool may_hide(const PatchShape& patch, const PatchShape& a, const PatchShape& b) {
     return height(patch, a) > -a.radius && height(patch, b) < b.radius &&
            height(a, patch) > -patch.radius && height(b, patch) > -patch.radius;
 }
@@ -44,11 +44,11 @@ class Capsule {
         inverse_ = squared > 0 ? 1 / squared : 0;
     }
 
-    bool touches(const glm::dvec3& centre, double radius) const {
-        const glm::dvec3 gap = centre - start_;
+    bool touches(const Sphere& sphere) const {
+        const glm::dvec3 gap = sphere.centre - start_;
         const double t = std::clamp(glm::dot(gap, along_) * inverse_, 0.0, 1.0);
         const glm::dvec3 across = gap - t * along_;
-        const double reach = radius_ + radius;
+        const double reach = radius_ + sphere.radius;
         return glm::dot(across, across) <= reach * reach;
     }
 
@@ -84,14 +84,13 @@ std::vector<std::uint32_t> near_neighbours(const std::vector<PatchShape>& patche
     return order;
 }
 
-Sphere around(const std::vector<PatchShape>& patches, std::span<const std::uint32_t> group) {
+Sphere around(std::span<const Sphere> group) {
     glm::dvec3 sum(0);
-    for (const std::uint32_t patch : group) sum += patches[patch].centre;
+    for (const Sphere& member : group) sum += member.centre;
     Sphere sphere{sum / double(group.size()), 0};
-    for (const std::uint32_t patch : group)
+    for (const Sphere& member : group)
         sphere.radius =
-            std::max(sphere.radius,
-                     glm::distance(patches[patch].centre, sphere.centre) + patches[patch].radius);
+            std::max(sphere.radius, glm::distance(member.centre, sphere.centre) + member.radius);
     return sphere;
 }
 
@@ -105,9 +104,11 @@ std::vector<PatchShape> patch_shapes(const Mesh& mesh) {
 
 PatchSpheres::PatchSpheres(const std::vector<PatchShape>& patches)
     : patches_(patches), order_(near_neighbours(patches)) {
-    for (std::size_t begin = 0; begin < order_.size(); begin += kGroup)
-        groups_.push_back(around(
-            patches, std::span(order_).subspan(begin, std::min(kGroup, order_.size() - begin))));
+    for (const std::uint32_t patch : order_)
+        spheres_.push_back({patches[patch].centre, patches[patch].radius});
+    for (std::size_t begin = 0; begin < spheres_.size(); begin += kGroup)
+        groups_.push_back(
+            around(std::span(spheres_).subspan(begin, std::min(kGroup, spheres_.size() - begin))));
 }
 
 void PatchSpheres::between(std::uint32_t from, std::uint32_t to,
@@ -116,13 +117,13 @@ void PatchSpheres::between(std::uint32_t from, std::uint32_t to,
     const PatchShape &a = patches_[from], &b = patches_[to];
     const Capsule capsule(a, b);
     for (std::size_t group = 0; group < groups_.size(); ++group) {
-        if (!capsule.touches(groups_[group].centre, groups_[group].radius)) continue;
+        if (!capsule.touches(groups_[group])) continue;
         const std::size_t end = std::min(order_.size(), (group + 1) * kGroup);
         for (std::size_t at = group * kGroup; at < end; ++at) {
-            const PatchShape& patch = patches_[order_[at]];
-            if (capsule.touches(patch.centre, patch.radius) && faces(patch, a, b) &&
-                order_[at] != from && order_[at] != to)
-                blockers.push_back(patch.corners);
+            if (!capsule.touches(spheres_[at])) continue;
+            const std::uint32_t patch = order_[at];
+            if (patch != from && patch != to && may_hide(patches_[patch], a, b))
+                blockers.push_back(patches_[patch].corners);
         }
     }
 }

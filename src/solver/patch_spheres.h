@@ -36,6 +36,7 @@ class PatchSpheres {
   private:
     const std::vector<PatchShape>& patches_;
     std::vector<std::uint32_t> order_;  ///< neighbours next to each other
+    std::vector<Sphere> spheres_;       ///< of the patches in that order
     std::vector<Sphere> groups_;
 };
 

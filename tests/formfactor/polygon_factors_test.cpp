@@ -255,6 +255,51 @@ TEST(PolygonToPolygon, IsExactForEdgesThatNearlyMeet) {
     }
 }
 
+// The factor to a polygon is the sum of those to its parts, whatever edges that makes.
+double splitting_error(const ConvexPolygon& from, const ConvexPolygon& to, double at) {
+    const glm::dvec3 cut = to[0] + at * (to[1] - to[0]);
+    const double parts = polygon_to_polygon(from, ConvexPolygon{to[0], cut, to[2]}) +
+                         polygon_to_polygon(from, ConvexPolygon{cut, to[1], to[2]});
+    return std::abs(polygon_to_polygon(from, to) - parts);
+}
+
+TEST(PolygonToPolygon, AddsUpForEdgesThatPassEachOtherClosely) {
+    const auto floor = facing_up(-1, -1, 1, 1);
+    for (const double gap : {1e-1, 1e-2, 1e-4, 1e-6}) {
+        const glm::dvec3 near(1 - gap, 0.1, gap);  // above the floor's edge, which it crosses
+        const ConvexPolygon to = {near - glm::dvec3(0.5, 0.3, -0.1),
+                                  near + glm::dvec3(0.5, 0.3, -0.1 * gap),
+                                  {0.3, 0.9, 1}};
+        EXPECT_GT(polygon_to_polygon(floor, to) + polygon_to_polygon(floor, test::reversed(to)),
+                  0.01);
+        for (const auto& side : {to, test::reversed(to)})
+            EXPECT_LT(splitting_error(floor, side, 0.37), 1e-9) << gap;
+    }
+}
+
+TEST(PolygonToPolygon, AddsUpForSlivers) {
+    std::mt19937 random(8);
+    for (int trial = 0; trial < 300; ++trial) {
+        auto sliver = random_triangle(random, {0, 0, 0}, 1);
+        sliver[2] = 0.5 * (sliver[0] + sliver[1]) + 1e-5 * random_point(random, 1);
+        const auto to = random_triangle(random, {0, 0, 0.5}, 1);
+        EXPECT_LT(splitting_error(sliver, to, 0.5), 2e-9) << trial;
+    }
+}
+
+TEST(PolygonToPolygon, IsExactFarAwayInGeneralPosition) {
+    std::mt19937 random(9);
+    int compared = 0;
+    while (compared < 30) {
+        const auto from = random_triangle(random, {0, 0, 0}, 1);
+        const auto to = random_triangle(random, {10, 20, 30}, 1);
+        const double factor = polygon_to_polygon(from, to);
+        if (factor < 1e-6) continue;
+        EXPECT_NEAR(mean_factor(from, to, 64) / factor, 1, 1e-6);
+        ++compared;
+    }
+}
+
 TEST(PolygonToPolygon, AgreesWithContoursInGeneralPosition) {
     std::mt19937 random(2);
     int compared = 0;
