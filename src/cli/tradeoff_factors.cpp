@@ -12,6 +12,7 @@
 #include "reference/monte_carlo.h"
 #include "reference/ray_caster.h"
 #include "solver/solver.h"
+#include "solver/view_factors.h"
 
 #ifdef HEMI_EMBREE
 #include "reference/embree/embree_caster.h"
@@ -197,14 +198,16 @@ FactorRows::FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_er
       device_(device),
       polygons_(polygons_of(mesh)),
       shooters_(spread_shooters(mesh, shooters)) {
-    FactorPoint finest;
-    finest.resolution = truth_error < 1e-5 ? 1024 : 512;
-    finest.shooter_samples = truth_error < 1e-5 ? 16 : 8;
-    const RowMaker make_row = on_host(finest, polygons_);
-    for (const std::uint32_t shooter : shooters_) {
-        truth_.push_back(make_row(shooter).values);
-        outside_.push_back(1 - std::accumulate(truth_.back().begin(), truth_.back().end(), 0.0));
+    ViewFactorSettings settings;
+    settings.target_error = truth_error;
+    settings.from = shooters_;
+    const auto factors =
+        view_factors(mesh, settings, device, [](std::size_t, std::size_t) { return true; });
+    for (const auto& row : factors.rows) {
+        auto& values = truth_.emplace_back(mesh.patches.size());
+        for (const FormFactor& factor : row) values[factor.to] = factor.value;
     }
+    outside_ = factors.outside;
 }
 
 FactorMeasurement FactorRows::measure(const FactorPoint& point) const {

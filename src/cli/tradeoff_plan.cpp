@@ -85,10 +85,10 @@ TradeoffPlan tradeoff_plan() {
     plan.truth_error = 1e-6;
     add_on_device(plan.factors, {32, 64, 128, 256, 512, 1024}, {1, 2, 4, 8});
     // Planes that 8, 1.6 and 0.4 % of what leaves the shooter pass by.
-    add_on_host(plan.factors, {32, 64, 128, 256, 512, 1024}, {1, 2, 4}, {3, 7, 15});
+    add_on_host(plan.factors, {32, 64, 128, 256, 512}, {1, 2, 4}, {3, 7, 15});
     add_rays(plan.factors, 1 << 10, 1 << 20);
-    plan.finest = {Method::analytic, 1024, 8, 1};
-    add_solves(plan.solves, {4, 2, 1}, {64, 128, 256, 512, 1024}, {1, 2, 4});
+    plan.finest = {Method::analytic, 512, 8, 1};
+    add_solves(plan.solves, {4, 2, 1}, {32, 64, 128, 256, 512}, {1, 2, 4});
     return plan;
 }
 
