@@ -147,8 +147,10 @@ Blockers blockers_between(const Pair& pair, std::span<const ConvexPolygon> candi
     Blockers blockers;
     Shaft shaft;
     shaft.set(pair, pair.from);
+    Blocker blocker;
     for (const ConvexPolygon& candidate : candidates) {
-        Blocker blocker{candidate, formfactor::plane_of(candidate)};
+        blocker.corners = candidate;
+        blocker.plane = formfactor::plane_of(candidate);
         if (blocker.plane.normal == glm::dvec3(0)) continue;
         Effect effect = shaft.effect(blocker);
         if (effect == Effect::none) continue;
