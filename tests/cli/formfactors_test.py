@@ -226,7 +226,7 @@ class FormFactorsTalk(FormFactorsCase):
     def test_first_interrupt_leaves_nothing(self):
         process = subprocess.Popen(
             [HEMIRAD, "formfactors", "cube.obj", "-o", "f.csv", "--patch-size", "0.02",
-             "--resolution", "1024"],
+             "--resolution", "1024", "--enforce"],
             cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
