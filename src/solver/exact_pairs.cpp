@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <thread>
+#include <utility>
 
 namespace hemirad {
 namespace {
@@ -79,12 +80,14 @@ bool ExactPairs::needs_it(const PatchShape& from, const PatchShape& to) const {
 }
 
 void ExactPairs::integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Worker& worker) const {
+    if (i == j || (both && j < i)) return;
+    // From the smaller one, so that the error of the way back is smaller still.
+    if (both && patches_[j].area < patches_[i].area) std::swap(i, j);
     const PatchShape &a = patches_[i], &b = patches_[j];
-    if (i == j || (both && j < i) || !may_need_it(a, b) || !needs_it(a, b)) return;
+    if (!may_need_it(a, b) || !needs_it(a, b)) return;
     worker.spheres.between(i, j, worker.blockers);
-    const double target = both ? target_ * std::min(1.0, b.area / a.area) : target_;
     const Estimate there =
-        blocked_polygon_to_polygon(a.corners, b.corners, worker.blockers, target, kMostPoints);
+        blocked_polygon_to_polygon(a.corners, b.corners, worker.blockers, target_, kMostPoints);
     worker.found.push_back({i, j, there});
     const double scale = a.area / b.area;
     if (both) worker.found.push_back({j, i, {there.value * scale, there.error * scale}});
