@@ -56,6 +56,16 @@ TEST_F(SolvesTest, OfFewerPointsAreOffOnTheSamePatches) {
     EXPECT_GT(errors.patches_largest, errors.patches_rms);
 }
 
+TEST_F(SolvesTest, KnowAnalyticFromCountedFactors) {
+    SolvePoint analytic = point_of(2, 1);
+    analytic.method = Method::analytic;
+
+    const auto errors = solves_.measure(analytic).errors;
+
+    EXPECT_GT(errors.patches_rms, 1e-4);
+    EXPECT_LT(errors.patches_rms, 0.1);
+}
+
 TEST_F(SolvesTest, CountPatchesAndProxels) {
     const auto measured = solves_.measure(point_of(2, 2));
 

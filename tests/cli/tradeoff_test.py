@@ -116,6 +116,11 @@ class Tradeoff(unittest.TestCase):
         self.assertGreater(self.factor("single_plane", "128", "2"),
                            2 * self.factor("hemicube", "128", "2"))
 
+    def test_row_sums_and_what_leaves_make_one_but_for_the_single_plane(self):
+        self.assertLess(self.factor("count", "128", "2", column="row_sum_error"), 0.01)
+        self.assertLess(self.factor("hemicube", "128", "2", column="row_sum_error"), 0.01)
+        self.assertGreater(self.factor("single_plane", "32", "2", column="row_sum_error"), 0.03)
+
     def test_finer_solves_are_nearer_and_coarser_patches_farther(self):
         fine, coarse = sorted({row["patch_size"] for row in self.solves}, key=float)
         for size in fine, coarse:
