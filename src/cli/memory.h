@@ -4,11 +4,12 @@
 
 #include "mp1map/pe_array.h"
 #include "scene/mesh.h"
+#include "solver/shot_pipeline.h"
 
 namespace hemirad {
 
 /// Bytes that solving a mesh will hold on the device.
-std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution,
+std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution, FormFactorMode mode,
                            const mp1map::PeArray& array);
 
 }  // namespace hemirad

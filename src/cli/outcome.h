@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
+#include "solver/accuracy.h"
 #include "solver/solution.h"
 #include "solver/solver.h"
 
@@ -21,8 +23,18 @@ struct Outcome {
         std::map<std::string, std::pair<double, std::uint64_t>> per_kernel;  ///< and launches
     };
 
+    /// What a second solution says of the error.
+    struct Error {
+        double relative_rms = 0;  ///< of the patches' irradiance, see relative_rms_difference
+        double largest = 0;       ///< of a patch, W/m^2
+        Accuracy against;         ///< settings of the second solution
+        Solution by_patch;        ///< |difference| as irradiance and radiosity
+    };
+
     Stop stop = Stop::converged;
     Solution solution;
+    Accuracy accuracy;  ///< that it was solved with
+    std::optional<Error> error;
     Closure closure;
     Seconds seconds;
     mp1map::DeviceSummary device;

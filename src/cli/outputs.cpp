@@ -76,8 +76,10 @@ void check_outputs(const SolveOptions& options) {
 }
 
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                   const Solution& solution) {
-    const auto lightmap = rasterize(mesh, solution, layout, options.quantity);
+                   const Solution& solution, const Solution* error) {
+    auto lightmap = rasterize(mesh, solution, layout, options.quantity);
+    if (error != nullptr)
+        lightmap.layers["error"] = rasterize(mesh, *error, layout, options.quantity).values;
     check_finite(options.output, lightmap);
     auto attributes = describe(solution, options.quantity);
     attributes.push_back({"version", std::string(HEMIRAD_VERSION)});

@@ -63,6 +63,15 @@ Json ledger_json(const Solution& solution) {
     return bands;
 }
 
+/// null where it was not asked for.
+Json error_json(const Outcome& outcome) {
+    if (!outcome.error) return nullptr;
+    return {{"relative_rms", outcome.error->relative_rms},
+            {"largest", outcome.error->largest},
+            {"resolution", outcome.error->against.resolution},
+            {"shooter_samples", outcome.error->against.shooter_samples}};
+}
+
 Json seconds_json(const Outcome::Seconds& seconds) {
     Json stages = Json::object();
     for (const auto& [kernel, spent] : seconds.per_kernel) stages[kernel] = spent.first;
@@ -95,6 +104,7 @@ void write_report(const std::filesystem::path& path, const SolveOptions& options
         {"shots", outcome.solution.shots},
         {"unshot_fraction", outcome.solution.unshot_fraction},
         {"ledger", ledger_json(outcome.solution)},
+        {"error", error_json(outcome)},
         {"closure", {{"min", outcome.closure.least}, {"max", outcome.closure.most}}},
         {"seconds", seconds_json(outcome.seconds)},
         {"peak_memory_bytes", peak_memory_bytes()},

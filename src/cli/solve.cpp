@@ -1,5 +1,6 @@
 #include "cli/solve.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -19,6 +20,7 @@
 #include "errors.h"
 #include "lightmap/write_faces.h"
 #include "scene/read_scene.h"
+#include "solver/accuracy.h"
 #include "solver/bands.h"
 
 namespace hemirad {
@@ -62,7 +64,10 @@ void require_light(const Work& work) {
 void require_memory(const Work& work, const SolveOptions& options,
                     const mp1map::DeviceSummary& device) {
     const auto array = mp1map::fit_pe_array(device, options.solver.pe_array);
-    const auto needed = device_bytes(work.mesh, options.solver.resolution, array);
+    const auto resolution = options.target_error
+                                ? accuracy_at(first_step(*options.target_error)).resolution
+                                : options.solver.resolution;
+    const auto needed = device_bytes(work.mesh, resolution, options.solver.form_factor, array);
     if (needed <= device.global_memory) return;
     throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
                      " has " + bytes_text(device.global_memory) +
@@ -83,22 +88,96 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
     });
 }
 
-void write_results(const Work& work, const SolveOptions& options, const Solution& solution) {
-    write_picture(options, work.mesh, work.layout, solution);
-    if (options.faces) write_faces(*options.faces, work.scene, work.mesh, solution);
-}
-
-Outcome outcome_of(ProgressiveSolver& solver, const Work& work, const mp1map::Device& device) {
+Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::Device& device,
+                   const Interrupts& interrupts) {
+    ProgressiveSolver solver(work.mesh, options.solver, device);
+    if (!options.quiet)
+        print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
+    const Stopwatch solving;
+    ShotClock shot_clock;
     Outcome outcome;
+    outcome.stop = shoot(solver, work, options, interrupts, shot_clock);
+    outcome.seconds.solve = solving.seconds();
     outcome.solution = solver.solution();
     outcome.closure = solver.closure();
+    outcome.accuracy = {options.solver.resolution, options.solver.shooter_samples,
+                        options.solver.sampling_error};
     outcome.seconds.build_kernels = solver.build_seconds();
     outcome.seconds.per_kernel = solver.kernel_seconds();
+    outcome.seconds.per_shot_median = shot_clock.median();
     outcome.device = device.summary();
     outcome.pe_array = solver.pe_array();
     outcome.device_bytes = solver.device_bytes();
-    outcome.warnings = warnings_of(work.scene, work.mesh);
     return outcome;
+}
+
+/// What the difference to `other` says of the error of `outcome`.
+void note_error(const Work& work, const Outcome& other, Outcome& outcome) {
+    const auto apart = difference(other.solution, outcome.solution);
+    outcome.error = {relative_rms_difference(work.mesh, other.solution, outcome.solution), 0,
+                     other.accuracy, apart};
+    for (const auto& band : apart.irradiance)
+        outcome.error->largest =
+            std::max(outcome.error->largest, *std::max_element(band.begin(), band.end()));
+    outcome.seconds.solve += other.seconds.solve;
+}
+
+SolveOptions with_solver(SolveOptions options, const SolverSettings& solver) {
+    options.solver = solver;
+    options.snapshots = {};
+    options.solver.stop_every = 0;
+    return options;
+}
+
+Outcome solve_and_estimate(const Work& work, const SolveOptions& options,
+                           const mp1map::Device& device, const Interrupts& interrupts) {
+    auto outcome = solve_once(work, options, device, interrupts);
+    if (options.estimate_error && !interrupts.requested())
+        note_error(work,
+                   solve_once(work, with_solver(options, for_comparison(options.solver)), device,
+                              interrupts),
+                   outcome);
+    return outcome;
+}
+
+/// Steps of the dial until one differs from the step before by no more than the target.
+Outcome solve_to_target(const Work& work, SolveOptions& options, const mp1map::Device& device,
+                        const Interrupts& interrupts) {
+    const SolverSettings open = options.solver;
+    const auto solve_at = [&](unsigned step) {
+        options.solver = open;
+        set_accuracy(options.solver, accuracy_at(step));
+        return solve_once(work, with_solver(options, options.solver), device, interrupts);
+    };
+    unsigned step = first_step(*options.target_error);
+    auto coarser = solve_at(step - 1);
+    if (interrupts.requested()) return coarser;
+    for (;; ++step) {
+        auto outcome = solve_at(step);
+        if (interrupts.requested() && outcome.stop == Stop::interrupted) return coarser;
+        note_error(work, coarser, outcome);
+        if (outcome.error->relative_rms <= *options.target_error || step == kFinestStep ||
+            interrupts.requested())
+            return outcome;
+        coarser = std::move(outcome);
+    }
+}
+
+void write_results(const Work& work, const SolveOptions& options, const Outcome& outcome) {
+    const bool layer = options.estimate_error && outcome.error;
+    write_picture(options, work.mesh, work.layout, outcome.solution,
+                  layer ? &outcome.error->by_patch : nullptr);
+    if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
+}
+
+void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
+    if (!options.target_error || !outcome.error ||
+        outcome.error->relative_rms <= *options.target_error)
+        return;
+    outcome.warnings.push_back("--target-error " + number_text(*options.target_error) +
+                               ": not reached, about " + number_text(outcome.error->relative_rms) +
+                               "; a smaller --patch-size may help");
+    print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
 int solve(SolveOptions options) {
@@ -108,23 +187,15 @@ int solve(SolveOptions options) {
     require_light(work);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_memory(work, options, device.summary());
-    ProgressiveSolver solver(work.mesh, options.solver, device);
-    if (!options.quiet)
-        print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
 
     const Interrupts interrupts;
-    const Stopwatch solving;
-    ShotClock shot_clock;
-    const auto stop = shoot(solver, work, options, interrupts, shot_clock);
-    const double solve_seconds = solving.seconds();
-
-    auto outcome = outcome_of(solver, work, device);
+    auto outcome = options.target_error ? solve_to_target(work, options, device, interrupts)
+                                        : solve_and_estimate(work, options, device, interrupts);
+    outcome.warnings = warnings_of(work.scene, work.mesh);
+    warn_of_missed_target(options, outcome);
     const Stopwatch writing;
-    write_results(work, options, outcome.solution);
-    outcome.stop = stop;
+    write_results(work, options, outcome);
     outcome.outputs = output_files(options);
-    outcome.seconds.solve = solve_seconds;
-    outcome.seconds.per_shot_median = shot_clock.median();
     outcome.seconds.lightmap = writing.seconds();
     outcome.seconds.total = total.seconds();
     if (options.report) write_report(*options.report, options, work.mesh, outcome);
@@ -141,6 +212,11 @@ void add_solve(CLI::App& app, Command& chosen) {
     command->callback([&chosen, options] {
         options->solver.stop_every = options->snapshots.shots;
         options->solver.timed = options->verbose || options->report.has_value();
+        if (options->target_error)
+            options->solver.tolerance =
+                std::min(options->solver.tolerance, *options->target_error / 4);
+        else
+            set_accuracy(options->solver, accuracy_at(static_cast<unsigned>(options->quality)));
         chosen = [options] { return solve(*options); };
     });
 }

@@ -10,6 +10,8 @@ namespace hemirad {
 namespace {
 
 const std::vector<std::string_view> kQuantities{"irradiance", "radiosity"};
+const std::vector<std::string_view> kQualities{"draft", "medium", "high", "ultra"};
+const std::vector<std::string_view> kFormFactorModes{"count", "analytic"};
 constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
 
 void add_file_options(CLI::App& command, SolveOptions& options) {
@@ -23,20 +25,38 @@ void add_file_options(CLI::App& command, SolveOptions& options) {
     add_text(command, {"--report", "FILE.json", "what happened, machine-readable"}, options.report);
 }
 
+CLI::Option* add_quality(CLI::App& command, Quality& quality) {
+    return add_value(command,
+                     {"--quality", "draft|medium|high|ultra",
+                      "resolution, samples and sampling error in one [medium]"},
+                     [&](const OptionValue& value) {
+                         quality = static_cast<Quality>(one_of(value, kQualities));
+                     });
+}
+
 void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     auto& solver = options.solver;
-    add_resolution(command, solver.resolution);
-    add_shooter_samples(command, solver.shooter_samples);
+    auto* const quality = add_quality(command, options.quality);
+    auto* const target =
+        add_value(command,
+                  {"--target-error", "E",
+                   "finer until the irradiance of patches is off by E of its mean, RMS"},
+                  [&](const OptionValue& value) { options.target_error = positive_number(value); });
+    target->excludes(quality);
+    command.add_flag("--estimate-error", options.estimate_error,
+                     "by a second solution: into the report, and into the EXR as layer error");
+    target->excludes(add_resolution(command, solver.resolution));
+    target->excludes(add_shooter_samples(command, solver.shooter_samples));
+    add_value(command,
+              {"--form-factor", "count|analytic",
+               "proxels counted, or closed form times visible fraction [analytic]"},
+              [&](const OptionValue& value) {
+                  solver.form_factor = static_cast<FormFactorMode>(one_of(value, kFormFactorModes));
+              });
     add_value(
         command,
-        {"--form-factor", "count|analytic",
-         "proxels counted, or closed form times visible fraction [analytic]"},
-        [&](const OptionValue& value) {
-            solver.form_factor = static_cast<FormFactorMode>(one_of(value, {"count", "analytic"}));
-        });
-    add_value(command,
-              {"--sampling-error", "E", "closed forms where one hemisphere errs by more [1e-3]"},
-              [&](const OptionValue& value) { solver.sampling_error = positive_number(value); });
+        {"--sampling-error", "E", "closed forms where one hemisphere errs by more [by --quality]"},
+        [&](const OptionValue& value) { solver.sampling_error = positive_number(value); });
     add_mesh_options(command, options.mesh);
     add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch]"},
               [&](const OptionValue& value) { options.texel_size = positive_number(value); });
@@ -134,15 +154,18 @@ void add_scene(CLI::App& command, std::filesystem::path& scene) {
     add_text(command, {"SCENE", "", "a .gltf, .glb, .obj or .vs3 file"}, scene)->required();
 }
 
-void add_resolution(CLI::App& command, std::uint32_t& resolution) {
-    add_value(command, {"--resolution", "N", "N x N proxels on the square around the disk [512]"},
-              [&](const OptionValue& value) {
-                  resolution = static_cast<std::uint32_t>(whole_number(value, 16, 8192));
-              });
+CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution) {
+    const auto standard = resolution == 0 ? "by --quality" : std::to_string(resolution);
+    return add_value(
+        command,
+        {"--resolution", "N", "N x N proxels on the square around the disk [" + standard + "]"},
+        [&](const OptionValue& value) {
+            resolution = static_cast<std::uint32_t>(whole_number(value, 16, 8192));
+        });
 }
 
-void add_shooter_samples(CLI::App& command, std::uint32_t& samples) {
-    add_value(
+CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples) {
+    return add_value(
         command, {"--shooter-samples", "M|auto", "hemispheres a shooting patch, M x M [auto]"},
         [&samples, automatic = samples](const OptionValue& value) {
             samples = value.text == "auto" ? automatic
@@ -186,7 +209,10 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
     const auto& solver = options.solver;
     std::vector<std::pair<std::string, std::string>> result{
         {"--resolution", std::to_string(solver.resolution)},
-        {"--shooter-samples", std::to_string(solver.shooter_samples)},
+        {"--shooter-samples",
+         solver.shooter_samples == 0 ? "auto" : std::to_string(solver.shooter_samples)},
+        {"--form-factor", name_of(solver.form_factor)},
+        {"--sampling-error", number_text(solver.sampling_error)},
         {"--patch-size", number_text(options.mesh.patch_size)},
         {"--texel-size", number_text(options.texel_size)},
         {"--backfaces", name_of(options.mesh.backfaces)},
@@ -201,6 +227,10 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
     if (solver.variants.incremental) result.emplace_back("--evaluate", "incremental");
     if (solver.variants.constant_distance) result.emplace_back("--distance", "constant");
     return result;
+}
+
+std::string name_of(FormFactorMode mode) {
+    return std::string(kFormFactorModes[static_cast<std::size_t>(mode)]);
 }
 
 std::string name_of(Quantity quantity) {

@@ -11,6 +11,7 @@
 #include "lightmap/lightmap.h"
 #include "lightmap/write_exr.h"
 #include "scene/mesh.h"
+#include "solver/accuracy.h"
 #include "solver/solver.h"
 
 namespace hemirad {
@@ -25,7 +26,11 @@ struct SolveOptions {
     std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
     std::optional<std::filesystem::path> preview, faces, report;
     MeshSettings mesh;
-    SolverSettings solver;
+    /// A resolution, samples or sampling error of 0 is the dial's: set_accuracy().
+    SolverSettings solver = {.resolution = 0, .sampling_error = 0};
+    Quality quality = Quality::medium;
+    std::optional<double> target_error;  ///< relative RMS of the patches' irradiance
+    bool estimate_error = false;
     double texel_size = 0;  ///< m; 0: default_texel_size()
     Quantity quantity = Quantity::irradiance;
     PixelType pixels = PixelType::float32;
@@ -41,10 +46,10 @@ void add_solve_options(CLI::App& command, SolveOptions& options);
 void add_scene(CLI::App& command, std::filesystem::path& scene);
 
 /// --resolution, of solve, info and formfactors.
-void add_resolution(CLI::App& command, std::uint32_t& resolution);
+CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution);
 
 /// --shooter-samples; `samples` holds what auto stands for.
-void add_shooter_samples(CLI::App& command, std::uint32_t& samples);
+CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples);
 
 /// --device to --tile, --layout and --broadcast.
 void add_array_options(CLI::App& command, std::string& device, std::uint32_t& compute_units,
@@ -57,5 +62,6 @@ void add_kernels(CLI::App& command, std::optional<std::filesystem::path>& folder
 std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options);
 
 std::string name_of(Quantity quantity);
+std::string name_of(FormFactorMode mode);
 
 }  // namespace hemirad

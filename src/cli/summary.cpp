@@ -69,7 +69,15 @@ void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh
         << counted(mesh.surfaces.size(), "surface") << ", " << (mesh.closed ? "closed" : "open")
         << '\n'
         << printable(device.name) << ": " << counted(device.compute_units, "compute unit") << ", "
-        << array.description() << '\n';
+        << array.description() << '\n'
+        << options.solver.resolution << "^2 proxels, "
+        << (options.solver.shooter_samples == 0
+                ? "hemispheres a patch by nearness"
+                : counted(std::uint64_t{options.solver.shooter_samples} *
+                              options.solver.shooter_samples,
+                          "hemisphere") +
+                      " a patch")
+        << ", form factors " << name_of(options.solver.form_factor) << '\n';
 }
 
 void print_summary(std::ostream& out, const SolveOptions& options, const Outcome& outcome) {
@@ -78,6 +86,10 @@ void print_summary(std::ostream& out, const SolveOptions& options, const Outcome
         << duration_text(outcome.seconds.solve);
     print(out, ", unshot %.3g %%\n", 100 * solution.unshot_fraction);
     print_ledger(out, solution);
+    if (outcome.error)
+        print(out,
+              "error about %.2g of the mean irradiance (RMS over patches), largest %.3g W/m^2\n",
+              outcome.error->relative_rms, outcome.error->largest);
     print(out, "closure %.9g to %.9g, %s in all\n", outcome.closure.least, outcome.closure.most,
           duration_text(outcome.seconds.total).c_str());
     if (options.verbose) {

@@ -64,14 +64,30 @@ double largest_residual(const Solution& solution) {
     return largest;
 }
 
-void require_channel_names(const std::vector<std::string>& bands) {
-    std::set<std::string> taken{kCoverage};
-    for (const std::string& band : bands) {
+struct Channel {
+    std::string name;
+    const std::vector<float>& values;
+};
+
+std::vector<Channel> channels_of(const Lightmap& lightmap) {
+    std::vector<Channel> channels;
+    for (std::size_t band = 0; band < lightmap.bands.size(); ++band)
+        channels.push_back({lightmap.bands[band], lightmap.values[band]});
+    channels.push_back({kCoverage, lightmap.coverage});
+    for (const auto& [layer, values] : lightmap.layers)
+        for (std::size_t band = 0; band < lightmap.bands.size(); ++band)
+            channels.push_back({layer + "." + lightmap.bands[band], values[band]});
+    return channels;
+}
+
+void require_channel_names(const Lightmap& lightmap) {
+    for (const std::string& band : lightmap.bands)
         if (band.empty()) throw InputError("band \"\": an EXR channel needs a name");
-        if (!taken.insert(band).second) {
-            throw InputError("band \"" + band + "\": the EXR already has a channel of this name");
-        }
-    }
+    std::set<std::string> taken;
+    for (const Channel& channel : channels_of(lightmap))
+        if (!taken.insert(channel.name).second)
+            throw InputError("band \"" + channel.name +
+                             "\": the EXR already has a channel of this name");
 }
 
 void insert(Imf::Header& header, const Attribute& attribute) {
@@ -89,10 +105,8 @@ Imf::Header header_of(const Lightmap& lightmap, const std::vector<Attribute>& at
                       PixelType type) {
     Imf::Header header(static_cast<int>(lightmap.width), static_cast<int>(lightmap.height));
     header.compression() = Imf::ZIP_COMPRESSION;
-    for (const std::string& band : lightmap.bands) {
-        header.channels().insert(band, Imf::Channel(imf_type(type)));
-    }
-    header.channels().insert(kCoverage, Imf::Channel(imf_type(type)));
+    for (const Channel& channel : channels_of(lightmap))
+        header.channels().insert(channel.name, Imf::Channel(imf_type(type)));
     for (const Attribute& attribute : attributes) insert(header, attribute);
     return header;
 }
@@ -132,10 +146,7 @@ Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type
         frame.buffer.insert(channel,
                             slice_of(frame.half_channels.back(), lightmap.width, Imf::HALF));
     };
-    for (std::size_t band = 0; band < lightmap.bands.size(); ++band) {
-        add(lightmap.bands[band], lightmap.values[band]);
-    }
-    add(kCoverage, lightmap.coverage);
+    for (const Channel& channel : channels_of(lightmap)) add(channel.name, channel.values);
     return frame;
 }
 
@@ -152,7 +163,7 @@ std::vector<Attribute> describe(const Solution& solution, Quantity quantity) {
 
 void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
                const std::vector<Attribute>& attributes, PixelType type) {
-    require_channel_names(lightmap.bands);
+    require_channel_names(lightmap);
     const Imf::Header header = header_of(lightmap, attributes, type);
     const Frame frame = frame_of(path.string(), lightmap, type);
     write_atomically(path, [&](std::ostream& stream) {

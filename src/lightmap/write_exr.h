@@ -21,9 +21,9 @@ std::vector<Attribute> describe(const Solution& solution, Quantity quantity);
 
 enum class PixelType { float32, half };
 
-/// Scanline OpenEXR, ZIP: a channel a band plus `coverage`, no alpha. The same arguments give the
-/// same bytes. Throws OutputError, also where a value is beyond the range of half, and InputError
-/// where a band's name cannot be a channel's.
+/// Scanline OpenEXR, ZIP: a channel a band plus `coverage`, LAYER.BAND for layers, no alpha. The
+/// same arguments give the same bytes. Throws OutputError, also where a value is beyond the range
+/// of half, and InputError where a band's name cannot be a channel's.
 void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
                const std::vector<Attribute>& attributes, PixelType type = PixelType::float32);
 

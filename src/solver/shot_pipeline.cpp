@@ -137,7 +137,7 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution) {
 
 std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
                                      std::size_t bands, std::uint32_t resolution,
-                                     const mp1map::PeArray& array) {
+                                     FormFactorMode mode, const mp1map::PeArray& array) {
     const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
     const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
@@ -150,7 +150,9 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner
     const std::uint64_t plane = 4 * tiles * array.tile_width * array.tile_height;
     const std::uint64_t reduction =
         stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
-    return geometry + radiosity + projection + lists + plane + reduction;
+    const std::uint64_t analytic =
+        mode == FormFactorMode::analytic ? stride * 4 * (kFactorKinds + 2) + plane : 0;
+    return geometry + radiosity + projection + lists + plane + reduction + analytic;
 }
 
 ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,

@@ -161,9 +161,9 @@ std::vector<std::string> kernel_names(FormFactorMode mode);
 /// Proxels whose centre lies in the disk (sec. 1.3.2), of resolution^2.
 std::uint64_t disk_proxel_count(std::uint32_t resolution);
 
-/// Bytes a pipeline holds on the device.
+/// Bytes a pipeline holds on the device; near pairs, 8 bytes each, come on top.
 std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
                                      std::size_t bands, std::uint32_t resolution,
-                                     const mp1map::PeArray& array);
+                                     FormFactorMode mode, const mp1map::PeArray& array);
 
 }  // namespace hemirad

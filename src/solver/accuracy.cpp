@@ -1,0 +1,82 @@
+#include "solver/accuracy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hemirad {
+namespace {
+
+// What limits a step: how the view changes over a shooter (its samples), before the outlines of
+// what hides a patch (the proxels) and closed forms for near pairs only (the sampling error).
+constexpr std::array<Accuracy, kFinestStep + 1> kDial = {{{128, 1, 1e-3},
+                                                          {512, 1, 1e-4},
+                                                          {512, 2, 1e-5},
+                                                          {512, 4, 1e-5},
+                                                          {1024, 8, 1e-6},
+                                                          {1024, 16, 1e-6}}};
+// Relative error of irradiance that a step may be expected to reach on its own in a mesh of the
+// default patch size.
+constexpr std::array<double, kFinestStep + 1> kExpected = {5e-2, 2e-2, 1e-2, 4e-3, 1.5e-3, 5e-4};
+
+std::vector<std::vector<double>> differences(const std::vector<std::vector<double>>& a,
+                                             const std::vector<std::vector<double>>& b) {
+    auto result = b;
+    for (std::size_t band = 0; band < b.size(); ++band)
+        for (std::size_t patch = 0; patch < b[band].size(); ++patch)
+            result[band][patch] = std::abs(a[band][patch] - b[band][patch]);
+    return result;
+}
+
+}  // namespace
+
+Accuracy accuracy_at(unsigned step) { return kDial[std::min(step, kFinestStep)]; }
+
+void set_accuracy(SolverSettings& settings, const Accuracy& accuracy) {
+    if (settings.resolution == 0) settings.resolution = accuracy.resolution;
+    if (settings.sampling_error == 0) settings.sampling_error = accuracy.sampling_error;
+    if (settings.shooter_samples == 0 && settings.form_factor == FormFactorMode::analytic)
+        settings.shooter_samples = accuracy.shooter_samples;
+}
+
+unsigned first_step(double target) {
+    unsigned step = 1;
+    while (step < kFinestStep && kExpected[step] > target) ++step;
+    return step;
+}
+
+SolverSettings for_comparison(const SolverSettings& settings) {
+    SolverSettings other = settings;
+    if (settings.shooter_samples <= 1) {
+        other.shooter_samples = 2;
+        return other;
+    }
+    other.shooter_samples = settings.shooter_samples / 2;
+    other.resolution = std::max(16u, settings.resolution / 2);
+    return other;
+}
+
+Solution difference(const Solution& a, const Solution& b) {
+    Solution result = b;
+    result.irradiance = differences(a.irradiance, b.irradiance);
+    result.radiosity = differences(a.radiosity, b.radiosity);
+    return result;
+}
+
+double relative_rms_difference(const Mesh& mesh, const Solution& a, const Solution& b) {
+    double largest = 0;
+    for (std::size_t band = 0; band < b.irradiance.size(); ++band) {
+        double squares = 0, flux = 0, area = 0;
+        for (std::size_t patch = 0; patch < mesh.patches.size(); ++patch) {
+            const double own = mesh.area(mesh.patches[patch]);
+            const double off = a.irradiance[band][patch] - b.irradiance[band][patch];
+            squares += own * off * off;
+            flux += own * b.irradiance[band][patch];
+            area += own;
+        }
+        if (flux > 0) largest = std::max(largest, std::sqrt(squares * area) / flux);
+    }
+    return largest;
+}
+
+}  // namespace hemirad
