@@ -10,14 +10,13 @@ namespace {
 // What limits a step: how the view changes over a shooter (its samples), before the outlines of
 // what hides a patch (the proxels) and closed forms for near pairs only (the sampling error).
 constexpr std::array<Accuracy, kFinestStep + 1> kDial = {{{128, 1, 1e-3},
-                                                          {512, 1, 1e-4},
-                                                          {512, 2, 1e-5},
-                                                          {512, 4, 1e-5},
-                                                          {1024, 8, 1e-6},
-                                                          {1024, 16, 1e-6}}};
-// Relative error of irradiance that a step may be expected to reach on its own in a mesh of the
-// default patch size.
-constexpr std::array<double, kFinestStep + 1> kExpected = {5e-2, 2e-2, 1e-2, 4e-3, 1.5e-3, 5e-4};
+                                                          {128, 2, 1e-4},
+                                                          {128, 4, 1e-5},
+                                                          {256, 8, 1e-6},
+                                                          {256, 16, 1e-6},
+                                                          {512, 32, 1e-6}}};
+// Relative error of irradiance of a step, as found in the Cornell box of 231 patches.
+constexpr std::array<double, kFinestStep + 1> kExpected = {4e-2, 8e-3, 2e-3, 6e-4, 2e-4, 6e-5};
 
 std::vector<std::vector<double>> differences(const std::vector<std::vector<double>>& a,
                                              const std::vector<std::vector<double>>& b) {
@@ -40,8 +39,8 @@ void set_accuracy(SolverSettings& settings, const Accuracy& accuracy) {
 }
 
 unsigned first_step(double target) {
-    unsigned step = 1;
-    while (step < kFinestStep && kExpected[step] > target) ++step;
+    unsigned step = 1;  // it is compared with the one before
+    while (step < kFinestStep && kExpected[step - 1] > target) ++step;
     return step;
 }
 

@@ -26,7 +26,7 @@ Accuracy accuracy_at(unsigned step);
 /// form factors keep samples of 0: their number then goes by the sampling error, patch by patch.
 void set_accuracy(SolverSettings& settings, const Accuracy& accuracy);
 
-/// The step from which on a relative error of irradiance as small as `target` is worth looking for.
+/// The first step that may differ from the one before by less than `target`, of the mean irradiance.
 unsigned first_step(double target);
 
 /// Other settings, whose solution differs from that of `settings` by about the larger of the two
