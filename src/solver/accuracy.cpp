@@ -10,11 +10,11 @@ namespace {
 // What limits a step: how the view changes over a shooter (its samples), before the outlines of
 // what hides a patch (the proxels) and closed forms for near pairs only (the sampling error).
 constexpr std::array<Accuracy, kFinestStep + 1> kDial = {{{128, 1, 1e-3},
-                                                          {128, 2, 1e-4},
-                                                          {128, 4, 1e-5},
-                                                          {256, 8, 1e-6},
-                                                          {256, 16, 1e-6},
-                                                          {512, 32, 1e-6}}};
+                                                          {256, 2, 1e-4},
+                                                          {256, 4, 1e-5},
+                                                          {512, 8, 1e-6},
+                                                          {512, 16, 1e-6},
+                                                          {1024, 32, 1e-6}}};
 // Relative error of irradiance of a step, as found in the Cornell box of 231 patches.
 constexpr std::array<double, kFinestStep + 1> kExpected = {4e-2, 8e-3, 2e-3, 6e-4, 2e-4, 6e-5};
 
