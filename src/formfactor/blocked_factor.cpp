@@ -380,7 +380,14 @@ Estimate blocked_polygon_to_polygon(std::span<const glm::dvec3> from,
                                     std::span<const glm::dvec3> to,
                                     std::span<const ConvexPolygon> blockers, double target_error,
                                     int most_points) {
-    const double whole = polygon_to_polygon(from, to);
+    return blocked_polygon_to_polygon(from, to, polygon_to_polygon(from, to), blockers,
+                                      target_error, most_points);
+}
+
+Estimate blocked_polygon_to_polygon(std::span<const glm::dvec3> from,
+                                    std::span<const glm::dvec3> to, double whole,
+                                    std::span<const ConvexPolygon> blockers, double target_error,
+                                    int most_points) {
     if (whole <= 0) return {0, kClosedFormError};
     const Pair pair = pair_of(from, to);
     const auto between = blockers_between(pair, blockers);

@@ -21,4 +21,10 @@ Estimate blocked_polygon_to_polygon(std::span<const glm::dvec3> from,
                                     std::span<const ConvexPolygon> blockers, double target_error,
                                     int most_points = 100000);
 
+/// The same where `unblocked`, polygon_to_polygon(from, to), is known.
+Estimate blocked_polygon_to_polygon(std::span<const glm::dvec3> from,
+                                    std::span<const glm::dvec3> to, double unblocked,
+                                    std::span<const ConvexPolygon> blockers, double target_error,
+                                    int most_points);
+
 }  // namespace hemirad

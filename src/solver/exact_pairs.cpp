@@ -73,9 +73,8 @@ bool ExactPairs::may_need_it(const PatchShape& from, const PatchShape& to) const
     return share > 0 && error_.of(share, from, to) > target_;
 }
 
-bool ExactPairs::needs_it(const PatchShape& from, const PatchShape& to) const {
-    const double there = polygon_to_polygon(from.corners, to.corners);
-    const double larger = std::max(there, there * from.area / to.area);
+bool ExactPairs::needs_it(const PatchShape& from, const PatchShape& to, double unblocked) const {
+    const double larger = std::max(unblocked, unblocked * from.area / to.area);
     return larger > 0 && error_.of(larger, from, to) > target_;
 }
 
@@ -84,10 +83,12 @@ void ExactPairs::integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Wor
     // From the smaller one, so that the error of the way back is smaller still.
     if (both && patches_[j].area < patches_[i].area) std::swap(i, j);
     const PatchShape &a = patches_[i], &b = patches_[j];
-    if (!may_need_it(a, b) || !needs_it(a, b)) return;
+    if (!may_need_it(a, b)) return;
+    const double unblocked = polygon_to_polygon(a.corners, b.corners);
+    if (!needs_it(a, b, unblocked)) return;
     worker.spheres.between(i, j, worker.blockers);
-    const Estimate there =
-        blocked_polygon_to_polygon(a.corners, b.corners, worker.blockers, target_, kMostPoints);
+    const Estimate there = blocked_polygon_to_polygon(a.corners, b.corners, unblocked,
+                                                      worker.blockers, target_, kMostPoints);
     worker.found.push_back({i, j, there});
     const double scale = a.area / b.area;
     if (both) worker.found.push_back({j, i, {there.value * scale, there.error * scale}});

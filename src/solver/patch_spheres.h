@@ -31,13 +31,15 @@ class PatchSpheres {
 
     /// Patches that reach into the capsule around two of them and may hide a part of the second
     /// from the first. `blockers` is overwritten.
-    void between(std::uint32_t from, std::uint32_t to, std::vector<ConvexPolygon>& blockers) const;
+    void between(std::uint32_t from, std::uint32_t to, std::vector<ConvexPolygon>& blockers);
 
   private:
     const std::vector<PatchShape>& patches_;
     std::vector<std::uint32_t> order_;  ///< neighbours next to each other
     std::vector<Sphere> spheres_;       ///< of the patches in that order
-    std::vector<Sphere> groups_;
+    /// Of the groups, an array a coordinate, so that the compiler takes several at a time.
+    std::vector<float> group_x_, group_y_, group_z_, group_radius_;
+    std::vector<std::uint8_t> touched_;  ///< groups, by the last capsule
 };
 
 }  // namespace hemirad

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <numeric>
@@ -181,10 +182,20 @@ FormFactors view_factors(const Mesh& mesh, const ViewFactorSettings& settings,
     const std::size_t steps = settings.target_error ? 2 * from.size() : from.size();
     std::vector<Row> rows;
     HemisphereRows hemispheres(mesh, pipeline, device);
+    // A row is put together while the device is at the next one.
+    std::future<Row> last;
+    bool goes_on = true;
     for (const std::uint32_t patch : from) {
-        rows.push_back(row_of(hemispheres.row(patch), patch, patches, settings.resolution));
-        if (!on_progress(rows.size(), steps)) return factors_of(from, rows, patches);
+        ProxelRow proxels = hemispheres.row(patch);
+        if (last.valid()) rows.push_back(last.get());
+        last = std::async(std::launch::async, [&, patch, seen = std::move(proxels)] {
+            return row_of(seen, patch, patches, settings.resolution);
+        });
+        goes_on = on_progress(rows.size() + 1, steps);
+        if (!goes_on) break;
     }
+    if (last.valid()) rows.push_back(last.get());
+    if (!goes_on) return factors_of(from, rows, patches);
     if (settings.target_error) {
         const ExactPairs exact(patches, error, *settings.target_error, hides_both_ways(mesh));
         const auto pairs = exact.integrate(
