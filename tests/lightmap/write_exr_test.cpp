@@ -75,6 +75,26 @@ TEST_F(WriteExr, BandsNameTheirChannels) {
     EXPECT_TRUE(read.channels.contains("550nm"));
 }
 
+TEST_F(WriteExr, LayersHaveTheirBandsBehindTheirName) {
+    auto lightmap = numbered_lightmap(5, 4, kRgb);
+    lightmap.layers["error"] = {lightmap.values[2], lightmap.values[0], lightmap.values[1]};
+
+    write_exr(file("a.exr"), lightmap, {});
+
+    const auto read = read_back(file("a.exr"));
+    ASSERT_EQ(read.channels.size(), 7u);
+    EXPECT_EQ(read.channels.at("error.R"), lightmap.values[2]);
+    EXPECT_EQ(read.channels.at("error.B"), lightmap.values[1]);
+    EXPECT_EQ(read.channels.at("R"), lightmap.values[0]);
+}
+
+TEST_F(WriteExr, ABandMayNotTakeALayersName) {
+    auto lightmap = numbered_lightmap(3, 2, {"R", "error.R"});
+    lightmap.layers["error"] = lightmap.values;
+
+    EXPECT_THROW(write_exr(file("a.exr"), lightmap, {}), InputError);
+}
+
 TEST_F(WriteExr, AttributesComeBack) {
     auto attributes = describe(solution_of({1.0}), Quantity::radiosity);
     attributes.push_back({"scene", "hall.gltf"});
