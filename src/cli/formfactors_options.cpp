@@ -1,5 +1,7 @@
 #include "cli/formfactors_options.h"
 
+#include <cmath>
+
 #include "cli/mesh_options.h"
 #include "cli/outputs.h"
 #include "cli/solve_options.h"
@@ -44,12 +46,28 @@ void add_choice_options(CLI::App& command, FormFactorsOptions& options) {
                      "least squares: A_i F_ij = A_j F_ji, and rows that sum to 1");
 }
 
+std::optional<double> target_of(Quality quality) {
+    if (quality == Quality::draft) return std::nullopt;
+    return std::pow(10.0, -2 - static_cast<int>(quality));
+}
+
 void add_accuracy_options(CLI::App& command, FormFactorsOptions& options) {
-    add_resolution(command, options.factors.resolution);
-    add_shooter_samples(command, options.factors.shooter_samples);
-    add_value(
-        command, {"--target-error", "E", "of each factor, absolute; others are integrated exactly"},
-        [&](const OptionValue& value) { options.factors.target_error = positive_number(value); });
+    const auto* const resolution = add_resolution(command, options.factors.resolution);
+    const auto* const samples = add_shooter_samples(command, options.factors.shooter_samples);
+    auto* const target = add_value(
+        command,
+        {"--target-error", "E", "of each factor, absolute; what may err by more is integrated"},
+        [&](const OptionValue& value) { options.factors.target_error = fraction(value); });
+    auto* const quality = add_quality(
+        command,
+        "no target, 1e-3, 1e-4 or 1e-5 [medium; draft where hemispheres are chosen by hand]",
+        options.quality);
+    target->excludes(quality);
+    command.final_callback([&options, resolution, samples, target, quality] {
+        const bool by_hand = resolution->count() + samples->count() > 0;
+        if (target->count() == 0 && (quality->count() > 0 || !by_hand))
+            options.factors.target_error = target_of(options.quality);
+    });
     add_mesh_options(command, options.mesh);
     command.get_option("--patch-size")
         ->description("longest edge of a patch; inf: every polygon is one patch [inf]");

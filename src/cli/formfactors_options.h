@@ -9,6 +9,7 @@
 
 #include "cli/options.h"
 #include "scene/mesh.h"
+#include "solver/accuracy.h"
 #include "solver/view_factors.h"
 
 namespace hemirad {
@@ -23,7 +24,8 @@ struct FormFactorsOptions {
     bool per_patch = false, enforce = false;
     MeshSettings mesh{.patch_size = std::numeric_limits<double>::infinity()};
     ViewFactorSettings factors;
-    std::string device;  ///< as mp1map::Device::open takes it
+    Quality quality = Quality::medium;  ///< unless factors.target_error is given
+    std::string device;                 ///< as mp1map::Device::open takes it
     std::uint32_t compute_units = 0;
     bool quiet = false, no_progress = false;
 };

@@ -114,53 +114,77 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
 /// What the difference to `other` says of the error of `outcome`.
 void note_error(const Work& work, const Outcome& other, Outcome& outcome) {
     const auto apart = difference(other.solution, outcome.solution);
-    outcome.error = {relative_rms_difference(work.mesh, other.solution, outcome.solution), 0,
-                     other.accuracy, apart};
+    outcome.error = {relative_rms_difference(work.mesh, other.solution, outcome.solution) +
+                         unshot_of_received(work.mesh, outcome.solution),
+                     0, other.accuracy, apart};
     for (const auto& band : apart.irradiance)
         outcome.error->largest =
             std::max(outcome.error->largest, *std::max_element(band.begin(), band.end()));
     outcome.seconds.solve += other.seconds.solve;
 }
 
-SolveOptions with_solver(SolveOptions options, const SolverSettings& solver) {
+/// What several solutions of one command share.
+struct Solving {
+    const Work& work;
+    const mp1map::Device& device;
+    const Interrupts& interrupts;
+    Stopwatch stopwatch = {};  ///< the time limit is that of all of them
+};
+
+Outcome solve_with(const Solving& solving, SolveOptions options, const SolverSettings& solver) {
     options.solver = solver;
+    options.solver.time_limit -= solving.stopwatch.seconds();
+    return solve_once(solving.work, options, solving.device, solving.interrupts);
+}
+
+SolveOptions without_snapshots(SolveOptions options) {
     options.snapshots = {};
     options.solver.stop_every = 0;
     return options;
 }
 
-Outcome solve_and_estimate(const Work& work, const SolveOptions& options,
-                           const mp1map::Device& device, const Interrupts& interrupts) {
-    auto outcome = solve_once(work, options, device, interrupts);
-    if (options.estimate_error && !interrupts.requested())
-        note_error(work,
-                   solve_once(work, with_solver(options, for_comparison(options.solver)), device,
-                              interrupts),
-                   outcome);
+/// An error is known only of solutions that both came to their end.
+Outcome solve_and_estimate(const Solving& solving, const SolveOptions& options) {
+    auto outcome = solve_with(solving, options, options.solver);
+    if (!options.estimate_error || outcome.stop != Stop::converged) return outcome;
+    const auto plain = without_snapshots(options);
+    const auto other = solve_with(solving, plain, for_comparison(plain.solver));
+    if (other.stop == Stop::converged) note_error(solving.work, other, outcome);
     return outcome;
 }
 
-/// Steps of the dial until one differs from the step before by no more than the target.
-Outcome solve_to_target(const Work& work, SolveOptions& options, const mp1map::Device& device,
-                        const Interrupts& interrupts) {
-    const SolverSettings open = options.solver;
+/// Steps of the dial until one differs from the step before by no more than the target. The last
+/// that came to its end is kept.
+Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
+    const auto plain = without_snapshots(options);
+    double tolerance = plain.solver.tolerance;
     const auto solve_at = [&](unsigned step) {
-        options.solver = open;
-        set_accuracy(options.solver, accuracy_at(step));
-        return solve_once(work, with_solver(options, options.solver), device, interrupts);
+        SolverSettings solver = plain.solver;
+        solver.tolerance = tolerance;
+        solver.shooter_samples = accuracy_at(step).shooter_samples;
+        set_accuracy(solver, accuracy_at(step));
+        auto outcome = solve_with(solving, plain, solver);
+        // Of lights that shine out of the scene, what is left is more of what arrives.
+        const double unshot = unshot_of_received(solving.work.mesh, outcome.solution);
+        if (unshot > *options.target_error / 4)
+            tolerance *= 0.9 * *options.target_error / (4 * unshot);
+        return outcome;
     };
     unsigned step = first_step(*options.target_error);
     auto coarser = solve_at(step - 1);
-    if (interrupts.requested()) return coarser;
-    for (;; ++step) {
+    while (coarser.stop == Stop::converged) {
         auto outcome = solve_at(step);
-        if (interrupts.requested() && outcome.stop == Stop::interrupted) return coarser;
-        note_error(work, coarser, outcome);
-        if (outcome.error->relative_rms <= *options.target_error || step == kFinestStep ||
-            interrupts.requested())
+        if (outcome.stop != Stop::converged) {
+            coarser.stop = outcome.stop;
+            break;
+        }
+        note_error(solving.work, coarser, outcome);
+        if (outcome.error->relative_rms <= *options.target_error || step == kFinestStep)
             return outcome;
         coarser = std::move(outcome);
+        ++step;
     }
+    return coarser;
 }
 
 void write_results(const Work& work, const SolveOptions& options, const Outcome& outcome) {
@@ -171,12 +195,11 @@ void write_results(const Work& work, const SolveOptions& options, const Outcome&
 }
 
 void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
-    if (!options.target_error || !outcome.error ||
-        outcome.error->relative_rms <= *options.target_error)
+    if (!options.target_error ||
+        (outcome.error && outcome.error->relative_rms <= *options.target_error))
         return;
     outcome.warnings.push_back("--target-error " + number_text(*options.target_error) +
-                               ": not reached, about " + number_text(outcome.error->relative_rms) +
-                               "; a smaller --patch-size may help");
+                               (outcome.error ? ": not reached" : ": stopped before it was known"));
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
@@ -189,8 +212,12 @@ int solve(SolveOptions options) {
     require_memory(work, options, device.summary());
 
     const Interrupts interrupts;
-    auto outcome = options.target_error ? solve_to_target(work, options, device, interrupts)
-                                        : solve_and_estimate(work, options, device, interrupts);
+    const Solving solving{work, device, interrupts};
+    auto outcome = options.target_error ? solve_to_target(solving, options)
+                                        : solve_and_estimate(solving, options);
+    options.solver.resolution = outcome.accuracy.resolution;
+    options.solver.shooter_samples = outcome.accuracy.shooter_samples;
+    options.solver.sampling_error = outcome.accuracy.sampling_error;
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
     const Stopwatch writing;
@@ -212,6 +239,9 @@ void add_solve(CLI::App& app, Command& chosen) {
     command->callback([&chosen, options] {
         options->solver.stop_every = options->snapshots.shots;
         options->solver.timed = options->verbose || options->report.has_value();
+        if (options->target_error &&
+            (options->snapshots.shots > 0 || options->snapshots.seconds > 0))
+            throw CLI::ExcludesError("--snapshot-every", "--target-error");
         if (options->target_error)
             options->solver.tolerance =
                 std::min(options->solver.tolerance, *options->target_error / 4);

@@ -25,23 +25,15 @@ void add_file_options(CLI::App& command, SolveOptions& options) {
     add_text(command, {"--report", "FILE.json", "what happened, machine-readable"}, options.report);
 }
 
-CLI::Option* add_quality(CLI::App& command, Quality& quality) {
-    return add_value(command,
-                     {"--quality", "draft|medium|high|ultra",
-                      "resolution, samples and sampling error in one [medium]"},
-                     [&](const OptionValue& value) {
-                         quality = static_cast<Quality>(one_of(value, kQualities));
-                     });
-}
-
 void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     auto& solver = options.solver;
-    auto* const quality = add_quality(command, options.quality);
+    auto* const quality = add_quality(
+        command, "resolution, samples and sampling error in one [medium]", options.quality);
     auto* const target =
         add_value(command,
                   {"--target-error", "E",
-                   "finer until the irradiance of patches is off by E of its mean, RMS"},
-                  [&](const OptionValue& value) { options.target_error = positive_number(value); });
+                   "finer until the irradiance of these patches is off by E of its mean, RMS"},
+                  [&](const OptionValue& value) { options.target_error = fraction(value); });
     target->excludes(quality);
     command.add_flag("--estimate-error", options.estimate_error,
                      "by a second solution: into the report, and into the EXR as layer error");
@@ -154,6 +146,13 @@ void add_scene(CLI::App& command, std::filesystem::path& scene) {
     add_text(command, {"SCENE", "", "a .gltf, .glb, .obj or .vs3 file"}, scene)->required();
 }
 
+CLI::Option* add_quality(CLI::App& command, const std::string& meaning, Quality& quality) {
+    return add_value(command, {"--quality", "draft|medium|high|ultra", meaning},
+                     [&](const OptionValue& value) {
+                         quality = static_cast<Quality>(one_of(value, kQualities));
+                     });
+}
+
 CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution) {
     const auto standard = resolution == 0 ? "by --quality" : std::to_string(resolution);
     return add_value(
@@ -219,6 +218,8 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         {"--max-reflectance", number_text(options.mesh.max_reflectance)},
         {"--tolerance", number_text(solver.tolerance)},
         {"--quantity", name_of(options.quantity)}};
+    if (options.target_error)
+        result.emplace_back("--target-error", number_text(*options.target_error));
     if (solver.max_shots != SolverSettings{}.max_shots)
         result.emplace_back("--max-shots", std::to_string(solver.max_shots));
     if (std::isfinite(solver.time_limit))

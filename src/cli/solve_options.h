@@ -45,6 +45,8 @@ void add_solve_options(CLI::App& command, SolveOptions& options);
 /// SCENE, of all that read one.
 void add_scene(CLI::App& command, std::filesystem::path& scene);
 
+CLI::Option* add_quality(CLI::App& command, const std::string& meaning, Quality& quality);
+
 /// --resolution, of solve, info and formfactors.
 CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution);
 

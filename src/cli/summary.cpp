@@ -88,7 +88,9 @@ void print_summary(std::ostream& out, const SolveOptions& options, const Outcome
     print_ledger(out, solution);
     if (outcome.error)
         print(out,
-              "error about %.2g of the mean irradiance (RMS over patches), largest %.3g W/m^2\n",
+              "error about %.2g or less of the mean irradiance (RMS over these patches), largest "
+              "%.3g "
+              "W/m^2\n",
               outcome.error->relative_rms, outcome.error->largest);
     print(out, "closure %.9g to %.9g, %s in all\n", outcome.closure.least, outcome.closure.most,
           duration_text(outcome.seconds.total).c_str());

@@ -24,6 +24,7 @@ constexpr double kClosedFormError = 1e-9;
 // cell's size over the distance of the nearest blocker.
 constexpr double kSafety = 1.5;
 constexpr double kUnseen = 0.1;
+constexpr std::size_t kBarsOfAGrille = 48;
 
 struct Blocker {
     ConvexPolygon corners;
@@ -217,11 +218,8 @@ class VisibleShare {
     VisibleShare(Pair pair, std::vector<Blocker> blockers, double target, int most_points)
         : pair_(std::move(pair)), blockers_(std::move(blockers)) {
         for (std::size_t index = 0; index < blockers_.size(); ++index) lists_.push_back(index);
-        const Range all{0, blockers_.size()};
-        for (std::size_t k = 1; k + 1 < pair_.from.size(); ++k) {
-            const Triangle triangle{pair_.from[0], pair_.from[k], pair_.from[k + 1]};
-            add_cell(triangle, narrowed(triangle, all), {});
-        }
+        for (const Triangle& triangle : triangles())
+            add_cell(triangle, narrowed(triangle, {0, blockers_.size()}), {});
         std::size_t next_sort = 16;
         while (error() > target && points_ + 13 <= most_points) {
             if (cells_.size() >= next_sort) {
@@ -243,6 +241,23 @@ class VisibleShare {
     }
 
   private:
+    // Halved cells have points in step with a grille of many bars, and might all look through it,
+    // or none. About a point at irrational shares of the diagonals they do not.
+    std::vector<Triangle> triangles() const {
+        const ConvexPolygon& from = pair_.from;
+        std::vector<Triangle> result;
+        if (blockers_.size() < kBarsOfAGrille) {
+            for (std::size_t k = 1; k + 1 < from.size(); ++k)
+                result.push_back({from[0], from[k], from[k + 1]});
+            return result;
+        }
+        const glm::dvec3 middle = from[0] + 0.7548776662466927 * (from[1] - from[0]);
+        const glm::dvec3 apex = middle + 0.5698402909980532 * (from[from.size() - 1] - middle);
+        for (std::size_t k = 0; k < from.size(); ++k)
+            result.push_back({apex, from[k], from[(k + 1) % from.size()]});
+        return result;
+    }
+
     Range narrowed(const Triangle& triangle, const Range& from) {
         if (from.hidden) return from;
         Range range{lists_.size(), lists_.size()};

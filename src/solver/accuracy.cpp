@@ -33,7 +33,10 @@ Accuracy accuracy_at(unsigned step) { return kDial[std::min(step, kFinestStep)];
 
 void set_accuracy(SolverSettings& settings, const Accuracy& accuracy) {
     if (settings.resolution == 0) settings.resolution = accuracy.resolution;
-    if (settings.sampling_error == 0) settings.sampling_error = accuracy.sampling_error;
+    // More hemispheres are dearer than closed forms.
+    const bool counts = settings.form_factor == FormFactorMode::count;
+    if (settings.sampling_error == 0)
+        settings.sampling_error = (counts ? 10 : 1) * accuracy.sampling_error;
     if (settings.shooter_samples == 0 && settings.form_factor == FormFactorMode::analytic)
         settings.shooter_samples = accuracy.shooter_samples;
 }
@@ -62,6 +65,18 @@ Solution difference(const Solution& a, const Solution& b) {
     return result;
 }
 
+double unshot_of_received(const Mesh& mesh, const Solution& solution) {
+    double largest = 0;
+    for (std::size_t band = 0; band < solution.irradiance.size(); ++band) {
+        const double unshot = solution.ledger[band].unshot;
+        double received = 0;
+        for (std::size_t patch = 0; patch < mesh.patches.size(); ++patch)
+            received += mesh.area(mesh.patches[patch]) * solution.irradiance[band][patch];
+        if (unshot > 0) largest = std::max(largest, unshot / received);
+    }
+    return largest;
+}
+
 double relative_rms_difference(const Mesh& mesh, const Solution& a, const Solution& b) {
     double largest = 0;
     for (std::size_t band = 0; band < b.irradiance.size(); ++band) {
@@ -73,7 +88,7 @@ double relative_rms_difference(const Mesh& mesh, const Solution& a, const Soluti
             flux += own * b.irradiance[band][patch];
             area += own;
         }
-        if (flux > 0) largest = std::max(largest, std::sqrt(squares * area) / flux);
+        if (squares > 0) largest = std::max(largest, std::sqrt(squares * area) / flux);
     }
     return largest;
 }

@@ -26,7 +26,8 @@ Accuracy accuracy_at(unsigned step);
 /// form factors keep samples of 0: their number then goes by the sampling error, patch by patch.
 void set_accuracy(SolverSettings& settings, const Accuracy& accuracy);
 
-/// The first step that may differ from the one before by less than `target`, of the mean irradiance.
+/// The first step that may differ from the one before by less than `target`, of the mean
+/// irradiance.
 unsigned first_step(double target);
 
 /// Other settings, whose solution differs from that of `settings` by about the larger of the two
@@ -35,6 +36,10 @@ SolverSettings for_comparison(const SolverSettings& settings);
 
 /// |a - b| of irradiance and radiosity, patch by patch; the rest is b's.
 Solution difference(const Solution& a, const Solution& b);
+
+/// Flux that is still to be shot over the flux received so far; the largest of the bands, infinite
+/// where one has received nothing.
+double unshot_of_received(const Mesh& mesh, const Solution& solution);
 
 /// Root of the mean over area of (a - b)^2, of the patches' irradiance, relative to b's mean; the
 /// largest of the bands.

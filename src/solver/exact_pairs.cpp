@@ -65,8 +65,12 @@ double HemisphereError::of_outline(double factor) const {
 }
 
 ExactPairs::ExactPairs(const std::vector<PatchShape>& patches, const HemisphereError& error,
-                       double target, bool symmetric)
-    : patches_(patches), error_(error), target_(target), symmetric_(symmetric) {}
+                       double target, bool symmetric, std::vector<bool> covered)
+    : patches_(patches),
+      error_(error),
+      target_(target),
+      symmetric_(symmetric),
+      covered_(std::move(covered)) {}
 
 bool ExactPairs::may_need_it(const PatchShape& from, const PatchShape& to) const {
     const double share = largest_exchange_share(from, to);
@@ -80,18 +84,22 @@ bool ExactPairs::needs_it(const PatchShape& from, const PatchShape& to, double u
 
 void ExactPairs::integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Worker& worker) const {
     if (i == j || (both && j < i)) return;
+    const std::uint32_t row = i;
     // From the smaller one, so that the error of the way back is smaller still.
     if (both && patches_[j].area < patches_[i].area) std::swap(i, j);
+    if (symmetric_ && covered_[i] && !covered_[j]) std::swap(i, j);
     const PatchShape &a = patches_[i], &b = patches_[j];
     if (!may_need_it(a, b)) return;
     const double unblocked = polygon_to_polygon(a.corners, b.corners);
     if (!needs_it(a, b, unblocked)) return;
     worker.spheres.between(i, j, worker.blockers);
-    const Estimate there = blocked_polygon_to_polygon(a.corners, b.corners, unblocked,
-                                                      worker.blockers, target_, kMostPoints);
-    worker.found.push_back({i, j, there});
+    const Estimate there =
+        blocked_polygon_to_polygon(a.corners, b.corners, unblocked, worker.blockers,
+                                   target_ * std::min(1.0, b.area / a.area), kMostPoints);
     const double scale = a.area / b.area;
-    if (both) worker.found.push_back({j, i, {there.value * scale, there.error * scale}});
+    if (both || i == row) worker.found.push_back({i, j, there});
+    if (both || j == row)
+        worker.found.push_back({j, i, {there.value * scale, there.error * scale}});
 }
 
 std::vector<ExactPair> ExactPairs::integrate(

@@ -34,8 +34,10 @@ struct ExactPair {
 class ExactPairs {
   public:
     /// `symmetric`: what hides one patch from another hides it the other way too.
+    /// `covered`: patches that something lies on, which hides them from others but not others from
+    /// them: their pairs are looked at from the other side.
     ExactPairs(const std::vector<PatchShape>& patches, const HemisphereError& error, double target,
-               bool symmetric);
+               bool symmetric, std::vector<bool> covered);
 
     /// Factors from the patches of `from` whose error by hemispheres might be over the target; both
     /// directions of a pair where both are rows. `on_progress` is called, by this
@@ -54,6 +56,7 @@ class ExactPairs {
     HemisphereError error_;
     double target_;
     bool symmetric_;
+    std::vector<bool> covered_;
 };
 
 }  // namespace hemirad

@@ -7,13 +7,16 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <span>
 #include <thread>
 #include <utility>
 
+#include "errors.h"
 #include "formfactor/polygon_factors.h"
+#include "solver/patch_arrays.h"
 
 namespace hemirad {
 namespace {
@@ -27,16 +30,8 @@ struct Body {
     double area, radius;
 };
 
-// A power of two, so that a scene scaled by one has factors of the same bits.
-double scale_of(const Mesh& mesh) {
-    double largest = 0;
-    for (const glm::dvec3& vertex : mesh.vertices)
-        largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
-    return largest > 0 ? std::exp2(-std::ilogb(largest)) : 1;
-}
-
 std::vector<Body> bodies_of(const Mesh& mesh) {
-    const double scale = scale_of(mesh);
+    const double scale = unit_scale(mesh);
     std::vector<Body> bodies;
     for (const Patch& patch : mesh.patches) {
         Body body{{},
@@ -195,6 +190,9 @@ std::vector<double> exchange_areas(std::span<const Body> bodies, std::span<const
 NearPairs near_pairs(const Mesh& mesh, double error) {
     const auto bodies = bodies_of(mesh);
     const auto pairs = pairs_of(bodies, error);
+    if (pairs.size() > std::numeric_limits<std::int32_t>::max() / 2)
+        throw InputError(std::to_string(pairs.size()) +
+                         " pairs of patches are near; raise --sampling-error");
     const auto exchange = exchange_areas(bodies, pairs);
 
     NearPairs near;

@@ -68,4 +68,11 @@ PatchArrays patch_arrays(const Mesh& mesh) {
     return arrays;
 }
 
+double unit_scale(const Mesh& mesh) {
+    double largest = 0;
+    for (const glm::dvec3& vertex : mesh.vertices)
+        largest = std::max({largest, std::abs(vertex.x), std::abs(vertex.y), std::abs(vertex.z)});
+    return largest > 0 ? std::exp2(-std::ilogb(largest)) : 1;
+}
+
 }  // namespace hemirad

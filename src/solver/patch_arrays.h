@@ -20,6 +20,10 @@ struct PatchArrays {
     double scale = 1;  ///< normalised = (world - centre) * scale
 };
 
+/// The power of two that brings a mesh's coordinates to about 1: no bit of a result changes where a
+/// scene is scaled by one, and squares are neither too large nor too small for floats.
+double unit_scale(const Mesh& mesh);
+
 /// Throws InputError where the scene's extent cannot be normalised.
 PatchArrays patch_arrays(const Mesh& mesh);
 

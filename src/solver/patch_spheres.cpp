@@ -7,18 +7,21 @@
 #include <numeric>
 #include <span>
 
+#include "solver/patch_arrays.h"
+
 namespace hemirad {
 namespace {
 
 constexpr std::size_t kGroup = 8;
 
-PatchShape shape_of(const Mesh& mesh, const Patch& patch) {
+PatchShape shape_of(const Mesh& mesh, const Patch& patch, double scale) {
     PatchShape shape;
     const int corner_count = patch.is_triangle() ? 3 : 4;
-    for (int k = 0; k < corner_count; ++k) shape.corners.push_back(mesh.vertices[patch.corners[k]]);
+    for (int k = 0; k < corner_count; ++k)
+        shape.corners.push_back(scale * mesh.vertices[patch.corners[k]]);
     shape.normal = mesh.normal(patch);
-    shape.area = mesh.area(patch);
-    shape.centre = mesh.centroid(patch);
+    shape.area = scale * scale * mesh.area(patch);
+    shape.centre = scale * mesh.centroid(patch);
     shape.radius = 0;
     for (const glm::dvec3& corner : shape.corners)
         shape.radius = std::max(shape.radius, glm::distance(corner, shape.centre));
@@ -143,7 +146,8 @@ double largest_coordinate(std::span<const Sphere> spheres) {
 
 std::vector<PatchShape> patch_shapes(const Mesh& mesh) {
     std::vector<PatchShape> shapes;
-    for (const Patch& patch : mesh.patches) shapes.push_back(shape_of(mesh, patch));
+    const double scale = unit_scale(mesh);
+    for (const Patch& patch : mesh.patches) shapes.push_back(shape_of(mesh, patch, scale));
     return shapes;
 }
 

@@ -9,7 +9,8 @@
 
 namespace hemirad {
 
-/// A patch for closed forms: in double precision, with its bounding sphere.
+/// A patch for closed forms: in double precision, with its bounding sphere; scaled, as all of its
+/// scene, so that coordinates are about 1.
 struct PatchShape {
     ConvexPolygon corners;
     glm::dvec3 normal, centre;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "solver/contacts.h"
 #include "solver/exact_pairs.h"
 #include "solver/hemisphere_rows.h"
 #include "solver/near_pairs.h"
@@ -104,7 +105,7 @@ void spread_residual(Row& row) {
     }
 }
 
-// Sum and outside make 1 whatever it takes.
+// Sum and outside make 1. What still lacks is known of nothing, and so goes to the outside.
 void close(Row& row) {
     const bool all_exact =
         std::ranges::all_of(row.entries, [](const Entry& entry) { return entry.exact; });
@@ -113,7 +114,8 @@ void close(Row& row) {
     else
         spread_residual(row);
     const double left = residual(row);
-    if (left > 0 && row.outside > 0) {
+    constexpr double kRounding = 1e-9;
+    if (left > 0 && (row.outside > 0 || left > kRounding)) {
         row.outside += left;
         return;
     }
@@ -143,8 +145,14 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const ViewFactorSettings& s
 
 // What was not integrated is known to be within the target.
 void put_exact(const std::vector<ExactPair>& pairs, const std::vector<std::uint32_t>& from,
-               double target, std::vector<Row>& rows, std::size_t patch_count) {
-    std::vector<std::vector<Entry>> exact(patch_count);
+               double target, std::vector<Row>& rows, const std::vector<Contact>& touching,
+               const std::vector<PatchShape>& patches) {
+    std::vector<std::vector<Entry>> exact(patches.size());
+    for (const Contact& contact : touching) {
+        const auto& [i, j, area] = contact;
+        exact[i].push_back({{j, 0, std::min(1.0, area / patches[i].area)}, true});
+        exact[j].push_back({{i, 0, std::min(1.0, area / patches[j].area)}, true});
+    }
     for (const ExactPair& pair : pairs)
         exact[pair.from].push_back({{pair.to, float(pair.factor.error), pair.factor.value}, true});
     for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -158,9 +166,9 @@ void put_exact(const std::vector<ExactPair>& pairs, const std::vector<std::uint3
 }
 
 FormFactors factors_of(const std::vector<std::uint32_t>& from, const std::vector<Row>& rows,
-                       const std::vector<PatchShape>& patches) {
+                       const Mesh& mesh) {
     FormFactors factors;
-    for (const PatchShape& patch : patches) factors.area.push_back(patch.area);
+    for (const Patch& patch : mesh.patches) factors.area.push_back(mesh.area(patch));
     for (std::size_t row = 0; row < rows.size(); ++row) {
         factors.from.push_back(from[row]);
         factors.outside.push_back(rows[row].outside);
@@ -195,14 +203,19 @@ FormFactors view_factors(const Mesh& mesh, const ViewFactorSettings& settings,
         if (!goes_on) break;
     }
     if (last.valid()) rows.push_back(last.get());
-    if (!goes_on) return factors_of(from, rows, patches);
+    if (!goes_on) return factors_of(from, rows, mesh);
     if (settings.target_error) {
-        const ExactPairs exact(patches, error, *settings.target_error, hides_both_ways(mesh));
+        const auto touching = contacts(mesh, patches);
+        std::vector<bool> covered(patches.size(), false);
+        for (const Contact& contact : touching)
+            covered[contact.first] = covered[contact.second] = true;
+        const ExactPairs exact(patches, error, *settings.target_error, hides_both_ways(mesh),
+                               std::move(covered));
         const auto pairs = exact.integrate(
             from, [&](std::size_t done) { return on_progress(from.size() + done, steps); });
-        put_exact(pairs, from, *settings.target_error, rows, patches.size());
+        put_exact(pairs, from, *settings.target_error, rows, touching, patches);
     }
-    return factors_of(from, rows, patches);
+    return factors_of(from, rows, mesh);
 }
 
 }  // namespace hemirad

@@ -63,6 +63,25 @@ TEST(RelativeRmsDifference, LeavesDarkBandsOut) {
     EXPECT_EQ(relative_rms_difference(mesh, a, b), 0);
 }
 
+TEST(RelativeRmsDifference, IsInfiniteToWhatHasReceivedNothing) {
+    const Mesh mesh = mesh_of({square({0, 0, 0}, kX, kY, 1)});
+    Solution a, b;
+    a.irradiance = {{1}};
+    b.irradiance = {{0}};
+
+    EXPECT_TRUE(std::isinf(relative_rms_difference(mesh, a, b)));
+}
+
+TEST(UnshotOfReceived, IsThatOfTheWorstBand) {
+    const Mesh mesh = mesh_of({square({0, 0, 0}, kX, kY, 2)});
+    Solution solution;
+    solution.irradiance = {{5}, {1}, {0}};  // 20, 4 and 0 W
+    solution.ledger.resize(3);
+    solution.ledger[0].unshot = solution.ledger[1].unshot = 2;
+
+    EXPECT_EQ(unshot_of_received(mesh, solution), 0.5);
+}
+
 // On a scene and a mesh that the dial was not made from.
 TEST(Estimates, AreNotLessThanTheError) {
     const Mesh mesh = meshed(furnished_room(), 1.2);

@@ -172,6 +172,33 @@ TEST(ViewFactors, ByCountingAloneCloseAndKnowTheirError) {
     }
 }
 
+// A crate on a floor: what touches sees nothing but each other, and the floor beneath does not look
+// out through the crate.
+TEST(ViewFactors, OfWhatStandsOnAFloorCloseTheRoom) {
+    auto polygons = box({1, 1, 1}, 1);
+    const glm::dvec3 corner[] = {{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}};
+    const auto raised = [&](int k) { return corner[k % 4] + glm::dvec3(0, 0, -0.5); };
+    const auto low = [&](int k) { return corner[k % 4] + glm::dvec3(0, 0, -1); };
+    polygons.push_back({{low(3), low(2), low(1), low(0)}});
+    polygons.push_back({{raised(0), raised(1), raised(2), raised(3)}});
+    for (int k = 0; k < 4; ++k)
+        polygons.push_back({{low(k), low(k + 1), raised(k + 1), raised(k)}});
+    Mesh mesh = mesh_of(polygons);
+    for (std::uint32_t i = 6; i < 12; ++i) mesh.surfaces[i].object = 1;
+    mesh.objects.push_back("crate");
+    mesh.parts.resize(2);
+    for (auto& part : mesh.parts) part.closed = true;
+
+    const auto factors = factors_of(mesh, 1e-4);
+
+    std::uint32_t floor = 0;
+    while (factors.at(6, floor) < 0.5) ++floor;
+    EXPECT_EQ(factors.at(6, floor), 1);
+    EXPECT_NEAR(factors.at(floor, 6), 0.25, 1e-12);
+    EXPECT_LT(reciprocity_error(factors), 2e-4);
+    for (const double outside : factors.outside) EXPECT_NEAR(outside, 0, 1e-3);
+}
+
 TEST(ViewFactors, BehindAWallAreZero) {
     auto polygons = squares(1);
     const auto wall = test::facing_down(-1, -1, 2, 2, 0.5);
