@@ -115,7 +115,7 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
 void note_error(const Work& work, const Outcome& other, Outcome& outcome) {
     const auto apart = difference(other.solution, outcome.solution);
     outcome.error = {relative_rms_difference(work.mesh, other.solution, outcome.solution) +
-                         unshot_of_received(work.mesh, outcome.solution),
+                         missing_light(outcome.solution),
                      0, other.accuracy, apart};
     for (const auto& band : apart.irradiance)
         outcome.error->largest =
@@ -165,9 +165,9 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
         set_accuracy(solver, accuracy_at(step));
         auto outcome = solve_with(solving, plain, solver);
         // Of lights that shine out of the scene, what is left is more of what arrives.
-        const double unshot = unshot_of_received(solving.work.mesh, outcome.solution);
-        if (unshot > *options.target_error / 4)
-            tolerance *= 0.9 * *options.target_error / (4 * unshot);
+        const double missing = missing_light(outcome.solution);
+        if (missing > *options.target_error / 4)
+            tolerance *= 0.9 * *options.target_error / (4 * missing);
         return outcome;
     };
     unsigned step = first_step(*options.target_error);

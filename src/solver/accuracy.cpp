@@ -65,15 +65,10 @@ Solution difference(const Solution& a, const Solution& b) {
     return result;
 }
 
-double unshot_of_received(const Mesh& mesh, const Solution& solution) {
+double missing_light(const Solution& solution) {
     double largest = 0;
-    for (std::size_t band = 0; band < solution.irradiance.size(); ++band) {
-        const double unshot = solution.ledger[band].unshot;
-        double received = 0;
-        for (std::size_t patch = 0; patch < mesh.patches.size(); ++patch)
-            received += mesh.area(mesh.patches[patch]) * solution.irradiance[band][patch];
-        if (unshot > 0) largest = std::max(largest, unshot / received);
-    }
+    for (const Ledger& band : solution.ledger)
+        if (band.unshot > 0) largest = std::max(largest, band.unshot / band.absorbed);
     return largest;
 }
 

@@ -37,9 +37,10 @@ SolverSettings for_comparison(const SolverSettings& settings);
 /// |a - b| of irradiance and radiosity, patch by patch; the rest is b's.
 Solution difference(const Solution& a, const Solution& b);
 
-/// Flux that is still to be shot over the flux received so far; the largest of the bands, infinite
-/// where one has received nothing.
-double unshot_of_received(const Mesh& mesh, const Solution& solution);
+/// Flux that is still to be shot over the flux absorbed so far, and so the share of the light that
+/// is missing if all of it is absorbed in the end: the largest of the bands, infinite where nothing
+/// is absorbed.
+double missing_light(const Solution& solution);
 
 /// Root of the mean over area of (a - b)^2, of the patches' irradiance, relative to b's mean; the
 /// largest of the bands.

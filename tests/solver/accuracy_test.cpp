@@ -72,14 +72,11 @@ TEST(RelativeRmsDifference, IsInfiniteToWhatHasReceivedNothing) {
     EXPECT_TRUE(std::isinf(relative_rms_difference(mesh, a, b)));
 }
 
-TEST(UnshotOfReceived, IsThatOfTheWorstBand) {
-    const Mesh mesh = mesh_of({square({0, 0, 0}, kX, kY, 2)});
+TEST(MissingLight, IsThatOfTheWorstBand) {
     Solution solution;
-    solution.irradiance = {{5}, {1}, {0}};  // 20, 4 and 0 W
-    solution.ledger.resize(3);
-    solution.ledger[0].unshot = solution.ledger[1].unshot = 2;
+    solution.ledger = {{10, 8, 0, 2}, {10, 4, 4, 2}, {0, 0, 0, 0}};
 
-    EXPECT_EQ(unshot_of_received(mesh, solution), 0.5);
+    EXPECT_EQ(missing_light(solution), 0.5);
 }
 
 // On a scene and a mesh that the dial was not made from.
