@@ -1,18 +1,14 @@
 // First level of the sums over all patches that close a shot's analytic form factors: of the
 // factors, and of the doubt about them. block_sums: [block][visible, doubtful].
-#include "lanes.clh"
 #include "shared.h"
-
-#define ACCUMULATORS (16 / LANES)  // sixteen sums whatever LANES, so that their order is one
+#include "sixteen_sums.clh"
 
 static float block_sum(const __global float* values, int block) {
     real_v sums[ACCUMULATORS];
     for (int a = 0; a < ACCUMULATORS; ++a) sums[a] = (real_v)0.0f;
     for (int step = 0; step < kReduceBlock / LANES; ++step)
         sums[step % ACCUMULATORS] += load_v(block * kReduceBlock + step * LANES, values);
-    float total = 0.0f;
-    for (int a = 0; a < 16; ++a) total += lane_of(sums[a / LANES], a % LANES);
-    return total;
+    return total_of(sums);
 }
 
 __kernel void add_up_factors(const __global Shot* shot, const __global float* factors, int stride,

@@ -53,12 +53,9 @@ __kernel void estimate_form_factors(const __global Shot* shot, const __global fl
     for (int level = 0; level < height; level += LANES) {
         const int count = min(LANES, height - level);
         int patches[LANES];
-        for (int lane = 0; lane < LANES; ++lane)
-            patches[lane] = stack[pe * depth + level + min(lane, count - 1)];
+        take_level(stack + pe * depth + level, count, patches);
         Point corner[CORNERS];
-        for (int k = 0; k < CORNERS; ++k)
-            corner[k] = rotated_into(
-                shot, relative_to(shot, gathered_points(corners + 3 * k * stride, stride, patches)));
+        gather_corners(shot, corners, stride, patches, corner);
         const real_v unblocked = point_to_polygon(corner);
         Point middle = corner[0];
         for (int k = 1; k < CORNERS; ++k) middle = sum_v(middle, corner[k]);

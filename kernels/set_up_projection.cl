@@ -41,14 +41,9 @@ __kernel void set_up_projection(const __global Shot* shot, const __global float*
     for (int level = 0; level < height; level += LANES) {
         const int count = min(LANES, height - level);
         int patches[LANES];
-        for (int lane = 0; lane < LANES; ++lane)
-            patches[lane] = stack[pe * depth + level + min(lane, count - 1)];
-
+        take_level(stack + pe * depth + level, count, patches);
         Point corner[CORNERS], planes[CORNERS];
-        for (int k = 0; k < CORNERS; ++k) {
-            const Point world = gathered_points(corners + 3 * k * stride, stride, patches);
-            corner[k] = rotated_into(shot, relative_to(shot, world));
-        }
+        gather_corners(shot, corners, stride, patches, corner);
         for (int k = 0; k < CORNERS; ++k)
             planes[k] = edge_plane(corner[k], corner[(k + 1) % CORNERS]);
 #ifdef DISTANCE_CONSTANT

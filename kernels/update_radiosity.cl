@@ -5,8 +5,7 @@
 // received, received_rest, unshot, reflectance: [band][patch]; flux in normalised units.
 #include "compensated.clh"
 #include "shared.h"
-
-#define ACCUMULATORS (16 / LANES)  // sixteen sums whatever LANES, so that their order is one
+#include "sixteen_sums.clh"
 
 static void shoot_at(const __global Shot* shot, const __global float* shot_flux, int stride,
                      int patch, real_v form_factor, __global float* received,
@@ -90,10 +89,7 @@ __kernel void update_radiosity(__global Shot* shot, const __global float* shot_f
                 }
         }
         summaries[block] = summary;
-        for (int band = 0; band < BANDS; ++band) {
-            float total = 0.0f;
-            for (int a = 0; a < 16; ++a) total += lane_of(sums[band][a / LANES], a % LANES);
-            block_unshot[block * BANDS + band] = total;
-        }
+        for (int band = 0; band < BANDS; ++band)
+            block_unshot[block * BANDS + band] = total_of(sums[band]);
     }
 }
