@@ -48,6 +48,12 @@ BandPlan plan_bands(const Mesh& mesh) {
     return plan;
 }
 
+bool emits_light(const Mesh& mesh) {
+    for (std::size_t band = 0; band < mesh.bands.size(); ++band)
+        if (emitted_flux(mesh, band) > 0) return true;
+    return false;
+}
+
 double emitted_radiosity(const Mesh& mesh, const Patch& patch, std::size_t band) {
     return std::numbers::pi * material_of(mesh, patch).emission[band];
 }

@@ -19,6 +19,9 @@ BandPlan plan_bands(const Mesh& mesh);
 /// Flux that a band's patches emit on their own, W.
 double emitted_flux(const Mesh& mesh, std::size_t band);
 
+/// Of any band.
+bool emits_light(const Mesh& mesh);
+
 /// Own emission of a patch as radiosity, pi * radiance, W/m^2.
 double emitted_radiosity(const Mesh& mesh, const Patch& patch, std::size_t band);
 

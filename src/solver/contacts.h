@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/mesh.h"
-#include "solver/patch_spheres.h"
+#include "solver/patch_shapes.h"
 
 namespace hemirad {
 

@@ -14,20 +14,13 @@ HemisphereRows::HemisphereRows(const Mesh& mesh, const PipelineSettings& setting
 }
 
 ProxelRow HemisphereRows::row(std::uint32_t patch) {
-    const std::uint32_t parts = pipeline_.part_count(patch);
-    for (;;) {
-        pipeline_.clear_counts();
-        pipeline_.set_shooter(patch);
-        for (std::uint32_t part = 0; part < parts; ++part) project_hemisphere(pipeline_);
-        if (pipeline_.shot().status != kBinsFull) break;
-        pipeline_.enlarge_lists();
-    }
+    project_shooter(pipeline_, patch);
     ProxelRow row;
     row.owned = pipeline_.proxel_counts();
     row.escaped = row.owned[pipeline_.stride()];
     row.owned.resize(patch_count_);
-    row.part_count = parts;
-    row.all = pipeline_.disk_proxels() * parts;
+    row.part_count = pipeline_.part_count(patch);
+    row.all = pipeline_.disk_proxels() * row.part_count;
     return row;
 }
 

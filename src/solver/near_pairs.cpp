@@ -16,7 +16,7 @@
 
 #include "errors.h"
 #include "formfactor/polygon_factors.h"
-#include "solver/patch_arrays.h"
+#include "solver/patch_shapes.h"
 
 namespace hemirad {
 namespace {
@@ -24,32 +24,8 @@ namespace {
 constexpr double kErrorOfCentre = 0.1;  // times the factor and (radius / distance)^2
 constexpr double kLarge = 4;            // times the median radius: not kept in cells
 
-struct Body {
-    std::array<glm::dvec3, 4> corners;
-    glm::dvec3 centre, normal;
-    double area, radius;
-};
-
-std::vector<Body> bodies_of(const Mesh& mesh) {
-    const double scale = unit_scale(mesh);
-    std::vector<Body> bodies;
-    for (const Patch& patch : mesh.patches) {
-        Body body{{},
-                  scale * mesh.centroid(patch),
-                  mesh.normal(patch),
-                  scale * scale * mesh.area(patch),
-                  0};
-        for (std::size_t k = 0; k < 4; ++k) {
-            body.corners[k] = scale * mesh.vertices[patch.corners[k]];
-            body.radius = std::max(body.radius, glm::distance(body.corners[k], body.centre));
-        }
-        bodies.push_back(body);
-    }
-    return bodies;
-}
-
 // Of the disk around the receiver, in its plane.
-glm::dvec3 nearest_point(const Body& receiver, const glm::dvec3& to) {
+glm::dvec3 nearest_point(const PatchShape& receiver, const glm::dvec3& to) {
     const glm::dvec3 foot = to - glm::dot(to - receiver.centre, receiver.normal) * receiver.normal;
     const double away = glm::distance(foot, receiver.centre);
     if (away <= receiver.radius) return foot;
@@ -57,7 +33,7 @@ glm::dvec3 nearest_point(const Body& receiver, const glm::dvec3& to) {
 }
 
 // Largest cosine under which a point sees a corner or the nearest point, against its own normal.
-double largest_cosine(const glm::dvec3& from, const glm::dvec3& normal, const Body& to) {
+double largest_cosine(const glm::dvec3& from, const glm::dvec3& normal, const PatchShape& to) {
     double largest = 0;
     const auto include = [&](const glm::dvec3& point) {
         const double distance = glm::distance(point, from);
@@ -68,13 +44,13 @@ double largest_cosine(const glm::dvec3& from, const glm::dvec3& normal, const Bo
     return largest;
 }
 
-bool in_front(const Body& body, const Body& of) {
-    return std::ranges::any_of(body.corners, [&](const glm::dvec3& corner) {
+bool in_front(const PatchShape& patch, const PatchShape& of) {
+    return std::ranges::any_of(patch.corners, [&](const glm::dvec3& corner) {
         return glm::dot(of.normal, corner - of.centre) > 0;
     });
 }
 
-double error_of_centre(const Body& shooter, const Body& receiver) {
+double error_of_centre(const PatchShape& shooter, const PatchShape& receiver) {
     if (!in_front(shooter, receiver) || !in_front(receiver, shooter)) return 0;
     const glm::dvec3 nearest = nearest_point(receiver, shooter.centre);
     const double distance = std::max(glm::distance(shooter.centre, nearest), 0.5 * shooter.radius);
@@ -86,34 +62,35 @@ double error_of_centre(const Body& shooter, const Body& receiver) {
 }
 
 // Beyond, error_of_centre is below `error`.
-double reach(const Body& shooter, double error) {
+double reach(const PatchShape& shooter, double error) {
     return std::sqrt(shooter.radius *
                      std::sqrt(kErrorOfCentre * shooter.area / (std::numbers::pi * error)));
 }
 
-/// Bodies by the cubic cells that their centres lie in; large ones in a list of their own.
+/// Patches by the cubic cells that their centres lie in; large ones in a list of their own.
 class Cells {
   public:
-    Cells(std::span<const Body> bodies, double error) : bodies_(bodies), error_(error) {
-        const double radius = median([](const Body& body) { return body.radius; });
+    Cells(std::span<const PatchShape> patches, double error) : patches_(patches), error_(error) {
+        const double radius = median([](const PatchShape& patch) { return patch.radius; });
         largest_kept_ = kLarge * radius;
-        edge_ = std::max(median([&](const Body& body) { return reach(body, error); }), radius);
-        for (std::size_t i = 0; i < bodies.size(); ++i)
-            (bodies[i].radius > largest_kept_ ? large_ : cells_[cell_of(bodies[i].centre)])
+        edge_ =
+            std::max(median([&](const PatchShape& patch) { return reach(patch, error); }), radius);
+        for (std::size_t i = 0; i < patches.size(); ++i)
+            (patches[i].radius > largest_kept_ ? large_ : cells_[cell_of(patches[i].centre)])
                 .push_back(i);
     }
 
-    /// Calls with every body that a hemisphere at the shooter's centre may be wrong about.
+    /// Calls with every patch that a hemisphere at the shooter's centre may be wrong about.
     template <class Visit>
     void visit_near(std::size_t shooter, const Visit& visit) const {
         const auto consider = [&](std::size_t receiver) {
-            const double wrong = error_of_centre(bodies_[shooter], bodies_[receiver]);
+            const double wrong = error_of_centre(patches_[shooter], patches_[receiver]);
             if (receiver != shooter && wrong > error_) visit(receiver, wrong);
         };
         std::ranges::for_each(large_, consider);
-        const glm::dvec3 far(reach(bodies_[shooter], error_) + largest_kept_);
-        const Cell first = cell_of(bodies_[shooter].centre - far);
-        const Cell last = cell_of(bodies_[shooter].centre + far);
+        const glm::dvec3 far(reach(patches_[shooter], error_) + largest_kept_);
+        const Cell first = cell_of(patches_[shooter].centre - far);
+        const Cell last = cell_of(patches_[shooter].centre + far);
         for_each_cell(first, last, [&](const std::vector<std::size_t>& cell) {
             std::ranges::for_each(cell, consider);
         });
@@ -122,9 +99,9 @@ class Cells {
   private:
     using Cell = std::array<std::int64_t, 3>;
 
-    double median(const std::function<double(const Body&)>& of) const {
+    double median(const std::function<double(const PatchShape&)>& of) const {
         std::vector<double> values;
-        for (const Body& body : bodies_) values.push_back(of(body));
+        for (const PatchShape& patch : patches_) values.push_back(of(patch));
         const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
         std::nth_element(values.begin(), middle, values.end());
         return *middle;
@@ -139,7 +116,7 @@ class Cells {
         // Wider than all there is: each cell once.
         if (static_cast<double>(last[0] - first[0]) * static_cast<double>(last[1] - first[1]) >
             static_cast<double>(cells_.size())) {
-            for (const auto& [at, bodies] : cells_) visit(bodies);
+            for (const auto& [at, patches] : cells_) visit(patches);
             return;
         }
         for (std::int64_t x = first[0]; x <= last[0]; ++x)
@@ -150,7 +127,7 @@ class Cells {
             }
     }
 
-    std::span<const Body> bodies_;
+    std::span<const PatchShape> patches_;
     double error_, edge_ = 1, largest_kept_ = 0;
     std::map<Cell, std::vector<std::size_t>> cells_;
     std::vector<std::size_t> large_;
@@ -158,10 +135,10 @@ class Cells {
 
 using Pair = std::pair<std::size_t, std::size_t>;  // the lower patch first
 
-std::vector<Pair> pairs_of(std::span<const Body> bodies, double error) {
-    const Cells cells(bodies, error);
+std::vector<Pair> pairs_of(std::span<const PatchShape> patches, double error) {
+    const Cells cells(patches, error);
     std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t i = 0; i < patches.size(); ++i)
         cells.visit_near(i, [&](std::size_t j, double) { pairs.push_back(std::minmax(i, j)); });
     std::ranges::sort(pairs);
     const auto repeated = std::ranges::unique(pairs);
@@ -170,14 +147,15 @@ std::vector<Pair> pairs_of(std::span<const Body> bodies, double error) {
 }
 
 // Area of the first times its factor to the second.
-std::vector<double> exchange_areas(std::span<const Body> bodies, std::span<const Pair> pairs) {
+std::vector<double> exchange_areas(std::span<const PatchShape> patches,
+                                   std::span<const Pair> pairs) {
     std::vector<double> result(pairs.size());
     const std::size_t thread_count = std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> threads;
     for (std::size_t first = 0; first < thread_count; ++first)
         threads.emplace_back([&, first] {
             for (std::size_t i = first; i < pairs.size(); i += thread_count) {
-                const Body &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
+                const PatchShape &a = patches[pairs[i].first], &b = patches[pairs[i].second];
                 result[i] = a.area * polygon_to_polygon(a.corners, b.corners);
             }
         });
@@ -188,24 +166,24 @@ std::vector<double> exchange_areas(std::span<const Body> bodies, std::span<const
 }  // namespace
 
 NearPairs near_pairs(const Mesh& mesh, double error) {
-    const auto bodies = bodies_of(mesh);
-    const auto pairs = pairs_of(bodies, error);
+    const auto patches = patch_shapes(mesh);
+    const auto pairs = pairs_of(patches, error);
     if (pairs.size() > std::numeric_limits<std::int32_t>::max() / 2)
         throw InputError(std::to_string(pairs.size()) +
                          " pairs of patches are near; raise --sampling-error");
-    const auto exchange = exchange_areas(bodies, pairs);
+    const auto exchange = exchange_areas(patches, pairs);
 
     NearPairs near;
-    near.begin.assign(bodies.size() + 1, 0);
+    near.begin.assign(patches.size() + 1, 0);
     for (const auto& [a, b] : pairs) ++near.begin[a + 1], ++near.begin[b + 1];
-    for (std::size_t i = 0; i < bodies.size(); ++i) near.begin[i + 1] += near.begin[i];
+    for (std::size_t i = 0; i < patches.size(); ++i) near.begin[i + 1] += near.begin[i];
     near.patch.resize(2 * pairs.size());
     near.form_factor.resize(2 * pairs.size());
     std::vector<std::int32_t> end(near.begin.begin(), near.begin.end() - 1);
     const auto put = [&](std::size_t from, std::size_t to, double exchanged) {
         const auto at = static_cast<std::size_t>(end[from]++);
         near.patch[at] = static_cast<std::int32_t>(to);
-        near.form_factor[at] = static_cast<float>(exchanged / bodies[from].area);
+        near.form_factor[at] = static_cast<float>(exchanged / patches[from].area);
     };
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         put(pairs[i].first, pairs[i].second, exchange[i]);
@@ -215,10 +193,10 @@ NearPairs near_pairs(const Mesh& mesh, double error) {
 }
 
 std::vector<std::int32_t> shooter_samples_for(const Mesh& mesh, double error, std::int32_t most) {
-    const auto bodies = bodies_of(mesh);
-    const Cells cells(bodies, error);
+    const auto patches = patch_shapes(mesh);
+    const Cells cells(patches, error);
     std::vector<std::int32_t> samples;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t i = 0; i < patches.size(); ++i) {
         double largest = error;
         cells.visit_near(i, [&](std::size_t, double wrong) { largest = std::max(largest, wrong); });
         const double needed = std::ceil(std::sqrt(largest / error));

@@ -7,26 +7,10 @@
 #include <numeric>
 #include <span>
 
-#include "solver/patch_arrays.h"
-
 namespace hemirad {
 namespace {
 
 constexpr std::size_t kGroup = 8;
-
-PatchShape shape_of(const Mesh& mesh, const Patch& patch, double scale) {
-    PatchShape shape;
-    const int corner_count = patch.is_triangle() ? 3 : 4;
-    for (int k = 0; k < corner_count; ++k)
-        shape.corners.push_back(scale * mesh.vertices[patch.corners[k]]);
-    shape.normal = mesh.normal(patch);
-    shape.area = scale * scale * mesh.area(patch);
-    shape.centre = scale * mesh.centroid(patch);
-    shape.radius = 0;
-    for (const glm::dvec3& corner : shape.corners)
-        shape.radius = std::max(shape.radius, glm::distance(corner, shape.centre));
-    return shape;
-}
 
 double height(const PatchShape& plane, const PatchShape& sphere) {
     return glm::dot(plane.normal, sphere.centre - plane.centre);
@@ -143,13 +127,6 @@ double largest_coordinate(std::span<const Sphere> spheres) {
 }
 
 }  // namespace
-
-std::vector<PatchShape> patch_shapes(const Mesh& mesh) {
-    std::vector<PatchShape> shapes;
-    const double scale = unit_scale(mesh);
-    for (const Patch& patch : mesh.patches) shapes.push_back(shape_of(mesh, patch, scale));
-    return shapes;
-}
 
 PatchSpheres::PatchSpheres(const std::vector<PatchShape>& patches)
     : patches_(patches), order_(near_neighbours(patches)) {

@@ -5,19 +5,9 @@
 #include <vector>
 
 #include "formfactor/polygon_factors.h"
-#include "scene/mesh.h"
+#include "solver/patch_shapes.h"
 
 namespace hemirad {
-
-/// A patch for closed forms: in double precision, with its bounding sphere; scaled, as all of its
-/// scene, so that coordinates are about 1.
-struct PatchShape {
-    ConvexPolygon corners;
-    glm::dvec3 normal, centre;
-    double radius, area;
-};
-
-std::vector<PatchShape> patch_shapes(const Mesh& mesh);
 
 struct Sphere {
     glm::dvec3 centre;

@@ -93,6 +93,17 @@ void project_hemisphere(ShotPipeline& pipeline) {
     if (pipeline.mode() == FormFactorMode::analytic) pipeline.estimate_form_factors();
 }
 
+void project_shooter(ShotPipeline& pipeline, std::uint32_t patch) {
+    pipeline.clear_counts();
+    for (;;) {
+        pipeline.set_shooter(patch);
+        for (std::uint32_t part = 0; part < pipeline.part_count(patch); ++part)
+            project_hemisphere(pipeline);
+        if (pipeline.shot().status != kBinsFull) return;
+        pipeline.enlarge_lists();
+    }
+}
+
 void close_form_factors(ShotPipeline& pipeline) {
     pipeline.correct_near_pairs();
     pipeline.add_up_factors();

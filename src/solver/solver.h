@@ -47,6 +47,10 @@ struct Progress {
 /// What the next of the shooter's hemispheres sees is counted.
 void project_hemisphere(ShotPipeline& pipeline);
 
+/// What all hemispheres of `patch` see is counted, instead of what came before; the lists are
+/// enlarged as needed.
+void project_shooter(ShotPipeline& pipeline, std::uint32_t patch);
+
 /// FormFactorMode::analytic: the shooter's factors from all its hemispheres add up to 1.
 void close_form_factors(ShotPipeline& pipeline);
 
