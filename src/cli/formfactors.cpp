@@ -1,7 +1,6 @@
 #include "cli/formfactors.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -11,6 +10,7 @@
 #include "cli/interrupts.h"
 #include "cli/near_names.h"
 #include "cli/row_display.h"
+#include "cli/stopwatch.h"
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -23,12 +23,6 @@
 
 namespace hemirad {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The scene, and what of it is a row or a column.
 struct Work {
@@ -136,11 +130,11 @@ LawErrors law_errors(const FormFactors& factors) {
 }
 
 void enforce_laws(FormFactors& factors, const Work& work, FactorsOutcome& outcome) {
-    const auto start = Clock::now();
+    const Stopwatch enforcing;
     outcome.before = law_errors(factors);
     enforce(factors);
     outcome.after = law_errors(factors);
-    outcome.enforce_seconds = seconds_since(start);
+    outcome.enforce_seconds = enforcing.seconds();
     constexpr double kHeld = 1e-9;
     if (outcome.after->closure < kHeld) return;
     outcome.warnings.push_back(work.scene.file +
@@ -204,7 +198,7 @@ int interrupted(const FormFactorsOptions& options) {
 }
 
 int formfactors(const FormFactorsOptions& options) {
-    const auto start = Clock::now();
+    const Stopwatch total;
     check_formfactors_options(options);
     const Work work = prepare(options);
     print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
@@ -213,16 +207,16 @@ int formfactors(const FormFactorsOptions& options) {
     if (!options.quiet) print_plan(work, outcome);
 
     const Interrupts interrupts;
-    const auto begin = Clock::now();
+    const Stopwatch computing;
     FormFactors factors = compute(work, options, device, interrupts);
-    outcome.factor_seconds = seconds_since(begin);
+    outcome.factor_seconds = computing.seconds();
     if (interrupts.requested()) return interrupted(options);
     if (options.enforce) enforce_laws(factors, work, outcome);
     if (interrupts.requested()) return interrupted(options);
     if (!options.per_patch) factors = gathered(factors, work.listed);
     measure(factors, work, options, outcome);
     write_output(factors, work, options);
-    outcome.total_seconds = seconds_since(start);
+    outcome.total_seconds = total.seconds();
     if (options.report) write_report(*options.report, options, outcome);
     if (!options.quiet) print_summary(std::cerr, outcome);
     return interrupts.requested() ? kInterrupted : kDone;

@@ -1,7 +1,6 @@
 #include "cli/solve.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -15,6 +14,7 @@
 #include "cli/shot_clock.h"
 #include "cli/snapshots.h"
 #include "cli/solve_options.h"
+#include "cli/stopwatch.h"
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -25,16 +25,6 @@
 
 namespace hemirad {
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Everything known before the first shot. The mesh is the scene's; both are needed to the end.
 struct Work {
@@ -56,8 +46,7 @@ Work prepare(SolveOptions& options) {
 }
 
 void require_light(const Work& work) {
-    for (std::size_t band = 0; band < work.mesh.bands.size(); ++band)
-        if (emitted_flux(work.mesh, band) > 0) return;
+    if (emits_light(work.mesh)) return;
     throw InputError(work.scene.file + ": nothing emits light, so there is nothing to solve");
 }
 
@@ -113,11 +102,10 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
 
 /// What the difference to `other` says of the error of `outcome`.
 void note_error(const Work& work, const Outcome& other, Outcome& outcome) {
-    const auto apart = difference(other.solution, outcome.solution);
     outcome.error = {relative_rms_difference(work.mesh, other.solution, outcome.solution) +
                          missing_light(outcome.solution),
-                     0, other.accuracy, apart};
-    for (const auto& band : apart.irradiance)
+                     0, other.accuracy, difference(other.solution, outcome.solution)};
+    for (const auto& band : outcome.error->by_patch.irradiance)
         outcome.error->largest =
             std::max(outcome.error->largest, *std::max_element(band.begin(), band.end()));
     outcome.seconds.solve += other.seconds.solve;

@@ -172,11 +172,15 @@ CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples) {
         });
 }
 
-void add_array_options(CLI::App& command, std::string& device, std::uint32_t& compute_units,
-                       mp1map::PeArrayRequest& array) {
+void add_device(CLI::App& command, std::string& device) {
     add_text(command,
              {"--device", "NAME|INDEX", "part of a name, or index, of hemirad devices [PoCL CPU]"},
              device);
+}
+
+void add_array_options(CLI::App& command, std::string& device, std::uint32_t& compute_units,
+                       mp1map::PeArrayRequest& array) {
+    add_device(command, device);
     add_value(command, {"--compute-units", "K", "of the device's [all]"},
               [&](const OptionValue& value) {
                   compute_units = static_cast<std::uint32_t>(whole_number(value, 1, 65536));

@@ -53,6 +53,8 @@ CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution);
 /// --shooter-samples; `samples` holds what auto stands for.
 CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples);
 
+void add_device(CLI::App& command, std::string& device);
+
 /// --device to --tile, --layout and --broadcast.
 void add_array_options(CLI::App& command, std::string& device, std::uint32_t& compute_units,
                        mp1map::PeArrayRequest& array);

@@ -11,6 +11,7 @@
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
 #include "cli/option_values.h"
+#include "cli/solve_options.h"
 #include "cli/sweep_csv.h"
 #include "cli/sweep_plan.h"
 #include "cli/text.h"
@@ -208,9 +209,7 @@ void add_sweep_options(CLI::App& command, SweepOptions& options) {
               });
     add_value(command, {"--patch-size", "S", "longest edge of a patch, m [0.43 for the halls]"},
               [&](const OptionValue& value) { options.patch_size = positive_or_infinite(value); });
-    add_text(command,
-             {"--device", "NAME|INDEX", "part of a name, or index, of hemirad devices [PoCL CPU]"},
-             options.device);
+    add_device(command, options.device);
     command.add_flag("--smoke", options.smoke, "few small points, and check the CSV's shape");
     command.add_flag("-q,--quiet", options.quiet, "no progress");
 }

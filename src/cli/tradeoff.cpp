@@ -81,8 +81,12 @@ class Tradeoff {
     }
 
     int run() {
-        take_factors();
-        if (emits_light()) take_solves();
+        const Mesh mesh = build_mesh(scene_, mesh_settings_);
+        take_factors(mesh);
+        if (emits_light(mesh))
+            take_solves();
+        else
+            say("nothing emits light, so there is nothing to solve");
         csv_.write(options_.output);
         return interrupts_.requested() ? kInterrupted : kDone;
     }
@@ -92,8 +96,7 @@ class Tradeoff {
         return {options_.scene.stem().string(), patch_size, patches};
     }
 
-    void take_factors() {
-        const Mesh mesh = build_mesh(scene_, mesh_settings_);
+    void take_factors(const Mesh& mesh) {
         const auto scene = row_scene(mesh_settings_.patch_size, mesh.patches.size());
         say("true factors of " + counted(plan_.shooters, "patch", "patches"));
         const FactorRows rows(mesh, plan_.shooters, plan_.truth_error, device_);
@@ -105,14 +108,6 @@ class Tradeoff {
             say(title(point) + ": " + three_digits(measured.errors.rms) + " rms, " +
                 three_digits(1e3 * measured.seconds) + " ms a row");
         }
-    }
-
-    bool emits_light() const {
-        const Mesh mesh = build_mesh(scene_, mesh_settings_);
-        for (std::size_t band = 0; band < mesh.bands.size(); ++band)
-            if (emitted_flux(mesh, band) > 0) return true;
-        say("nothing emits light, so there is nothing to solve");
-        return false;
     }
 
     void take_solves() {
@@ -151,9 +146,7 @@ void add_tradeoff_options(CLI::App& command, TradeoffOptions& options) {
     add_text(command, {"-o,--output", "FILE.csv", "a row a setting [tradeoff.csv]"},
              options.output);
     add_mesh_options(command, options.mesh);
-    add_text(command,
-             {"--device", "NAME|INDEX", "part of a name, or index, of hemirad devices [PoCL CPU]"},
-             options.device);
+    add_device(command, options.device);
     command.add_flag("--quick", options.quick, "few settings of few proxels");
     command.add_flag("-q,--quiet", options.quiet, "no progress");
 }

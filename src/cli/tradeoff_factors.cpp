@@ -85,20 +85,11 @@ std::vector<double> device_factors(ShotPipeline& pipeline, double proxels, std::
 }
 
 FactorRow device_row(ShotPipeline& pipeline, std::uint32_t shooter, std::size_t patch_count) {
-    for (;;) {
-        const std::uint32_t parts = pipeline.part_count(shooter);
-        pipeline.set_shooter(shooter);
-        for (std::uint32_t part = 0; part < parts; ++part) project_hemisphere(pipeline);
-        if (pipeline.mode() == FormFactorMode::analytic) close_form_factors(pipeline);
-        if (pipeline.shot().status == kBinsFull) {
-            pipeline.enlarge_lists();
-            continue;
-        }
-        FactorRow row{{}, static_cast<double>(pipeline.disk_proxels() * parts)};
-        row.values = device_factors(pipeline, row.samples, patch_count);
-        pipeline.clear_counts();
-        return row;
-    }
+    project_shooter(pipeline, shooter);
+    if (pipeline.mode() == FormFactorMode::analytic) close_form_factors(pipeline);
+    FactorRow row{{}, static_cast<double>(pipeline.disk_proxels() * pipeline.part_count(shooter))};
+    row.values = device_factors(pipeline, row.samples, patch_count);
+    return row;
 }
 
 RowMaker on_device(const FactorPoint& point, const Mesh& mesh, const mp1map::Device& device) {
