@@ -21,6 +21,8 @@ struct Patch {
     bool is_triangle() const { return corners[3] == corners[2]; }
 };
 
+inline constexpr std::uint32_t kOwnPlane = 0xffffffffu;
+
 /// Coplanar, connected faces of one object and one material, cut into a regular grid.
 /// A point of the surface is origin + s * u_axis + t * v_axis with 0 <= s <= columns * cell_size.x
 /// and 0 <= t <= rows * cell_size.y; (u_axis, v_axis, normal) is orthonormal and right-handed.
@@ -29,6 +31,9 @@ struct Surface {
     std::uint32_t material = 0;  ///< index into Mesh::materials
     bool is_back = false;        ///< the reverse of an open sheet or of a double-sided material
     bool has_chart = true;       ///< false for backs that only block and absorb
+    /// Surfaces of the same number lie in one plane, either way up, and see nothing of each other;
+    /// kOwnPlane: no other does.
+    std::uint32_t plane = kOwnPlane;
     glm::dvec3 origin{}, u_axis{}, v_axis{}, normal{};
     glm::dvec2 cell_size{};
     std::uint32_t columns = 1, rows = 1;
