@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 // What a proxel sees, and what it might see
 // ----------------------------------------
@@ -17,34 +18,41 @@
 // flips the sign of m exactly, so two polygons that share an edge never both miss a ray between
 // them.
 //
-// Now let each point of a polygon move by up to d = `bound`. A displaced polygon meets the ray at a
-// point that came from some y of the polygon within d of the ray. With h the height of O above the
-// polygon's plane and c = -dot(normal, x):
+// Now let each point of a polygon move by up to d, the bound at its farthest corner and so no less
+// than at any other point of it. A displaced polygon meets the ray at a point that came from some y
+// of the polygon within d of the ray. With h the height of O above the polygon's plane and
+// c = -dot(normal, x):
 //  (1) y is at a distance t along the ray, to within d, so |h - c t| <= d and
 //      min |y| - d <= t <= max |y| + d: the range of depths.
 //  (2) y satisfies dot(cross(q, p), y) / |q - p| >= 0, and this is a moment that d changes by no
-//  more
-//      than d |O to edge line|. With y = t x to within d: m >= -d |O to edge line| / t. Below d
-//      itself the rounding of m is no displacement, so the slack is at least d.
+//      more than d |O to edge line|. With y = t x to within d: m >= -d |O to edge line| / t. An
+//      edge may also be moved outwards by d, so the slack is at least d.
 //  (3) The signed count of intersections of ray and polygon changes only where the polygon's
-//  boundary
-//      comes across the ray or the polygon across O. With m > d at every edge the former does not
-//      happen, as |m| is at most the distance from ray to edge; with h > d neither does the latter.
-//      The hit is then sure, whatever the displacement, and no farther than the range of (1).
-// A polygon is admissible if (1) and (2) hold and no sure hit lies wholly before its range.
+//      boundary comes across the ray or the polygon across O. With m > d at every edge the former
+//      does not happen, as |m| is at most the distance from ray to edge; with h > d neither does
+//      the latter. The hit is then sure, whatever the displacement, and no farther than the range
+//      of (1).
+// A polygon is admissible if (1) and (2) hold and no sure hit lies wholly before its range. Each
+// polygon has its own d; they meet only in their ranges, which hold that d.
 //
-// Displaced vertices turn a normal by up to 2 d / width: one up, the opposite edge down. The plane
-// at O then moves by up to d + tilt * max |y|, and where |h| is less the polygon is edge-on: it may
-// show either side, (2) says nothing of its back, and no hit is sure. Lower, it shows its back
-// only. No front is seen along a ray that follows the normal, c <= -tilt: this is why a shooter
-// cannot see its own patch, nor any other of its plane.
+// Displaced vertices turn a normal by up to 2 d / width: one up, the opposite edge down; by no more
+// than `turn` where the normal does not come from them. The plane at O then moves by up to
+// d + tilt * max |y|, and where |h| is less the polygon is edge-on: it may show either side, (2)
+// says nothing of its back, and no hit is sure. Lower, it shows its back only. No front is seen
+// along a ray that follows the normal, c <= -tilt: this is why a shooter cannot see its own patch,
+// nor any other of its plane.
+//
+// This file's own doubles, u = 2^-53 and r the farthest point: a corner less the origin errs by
+// u |component| each, sqrt(3) u r in all where both lie on one grid or the origin is 0; its moment,
+// from q - p and the lesser of p and q, by 4 u r; the product with x, itself within 2 u of its
+// direction, by 5 u r more. In all below 12 u r < kProjectorRounding r.
 namespace hemirad::reference {
 namespace {
 
 using glm::dvec3;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kOwnRounding = 1e-12;  // relative, of this file's doubles, generously
+constexpr double kOwnRounding = 1e-12;  // of columns, rows and radii, generously
 
 struct Range {
     double low, high;
@@ -61,6 +69,7 @@ struct Target {
     dvec3 normal{};
     double height = 0;  // of the origin above the polygon's plane
     bool edge_on = false;
+    double bound = 0;  // d above
     double tilt = 0;
     Range distance{};  // of the polygon's points from the origin, widened by the bound
     std::array<Edge, 4> edges{};
@@ -104,13 +113,22 @@ double least_width(const std::array<dvec3, 4>& corners) {
     return width;
 }
 
+bool precedes(const dvec3& p, const dvec3& q) {
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+}
+
+// cross(q, p), from their difference: two long products of nearly equal corners would cancel.
+dvec3 moment_of(const dvec3& p, const dvec3& q) {
+    return precedes(p, q) ? glm::cross(q - p, p) : -glm::cross(p - q, q);
+}
+
 void set_edges(Target& target, const std::array<dvec3, 4>& corners) {
     for (std::size_t k = 0; k < 4; ++k) {
         const dvec3 p = corners[k];
         const dvec3 q = corners[(k + 1) % 4];
         const double length = glm::length(q - p);
         if (length == 0) continue;
-        const dvec3 moment = glm::cross(q, p) / length;
+        const dvec3 moment = moment_of(p, q) / length;
         target.edges[target.edge_count++] = {moment, glm::length(moment)};
     }
 }
@@ -134,11 +152,11 @@ int proxel_above(double coordinate, int resolution) {
 
 // The polygon lies in a ball, the ball in a cone of directions. `distance` keeps clear of the ball.
 void set_bounds(Target& target, const std::array<dvec3, 4>& corners, const Shooter& shooter,
-                int resolution, double bound) {
+                int resolution) {
     const dvec3 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4.0;
     double radius = 0;
     for (const dvec3& corner : corners) radius = std::max(radius, glm::distance(corner, middle));
-    radius = (radius + bound) * (1 + kOwnRounding);
+    radius = (radius + target.bound) * (1 + kOwnRounding);
     const double away = glm::length(middle);
     target.distance = {std::max(0.0, away - radius), away + radius};
     const bool around = away <= radius;
@@ -154,25 +172,32 @@ void set_bounds(Target& target, const std::array<dvec3, 4>& corners, const Shoot
     target.last_row = proxel_above(v.high, resolution);
 }
 
+double farthest(const std::array<dvec3, 4>& corners) {
+    double distance = 0;
+    for (const dvec3& corner : corners) distance = std::max(distance, glm::length(corner));
+    return distance;
+}
+
 std::optional<Target> target_of(const Polygon& polygon, const Shooter& shooter, int resolution,
-                                double bound) {
+                                const Bound& bound) {
     Target target;
     target.normal = normal(polygon);
     if (target.normal == dvec3(0)) return std::nullopt;
     std::array<dvec3, 4> corners = polygon.corners;
     for (dvec3& corner : corners) corner -= shooter.origin;
-    set_bounds(target, corners, shooter, resolution, bound);
+    target.bound = bound.relative * farthest(corners) + bound.absolute;
+    set_bounds(target, corners, shooter, resolution);
     set_edges(target, corners);
     target.height = -glm::dot(target.normal, corners[0]);
-    target.tilt = 2 * bound / least_width(corners);
-    const double play = bound + target.tilt * target.distance.high;
+    target.tilt = std::min(2 * target.bound / least_width(corners), bound.turn);
+    const double play = target.bound + target.tilt * target.distance.high;
     if (target.height < -play) return std::nullopt;
     target.edge_on = target.height <= play;
     return target;
 }
 
 std::vector<Target> targets_of(std::span<const Polygon> polygons, const Shooter& shooter,
-                               int resolution, double bound) {
+                               int resolution, const Bound& bound) {
     std::vector<Target> targets;
     for (std::size_t polygon = 0; polygon < polygons.size(); ++polygon) {
         auto target = target_of(polygons[polygon], shooter, resolution, bound);
@@ -184,7 +209,8 @@ std::vector<Target> targets_of(std::span<const Polygon> polygons, const Shooter&
 }
 
 // (1) above. Empty, low > high, where no displacement brings the polygon's plane to the ray.
-Range depth_range(const Target& target, double cosine, double bound) {
+Range depth_range(const Target& target, double cosine) {
+    const double bound = target.bound;
     Range slab{-kInfinity, kInfinity};
     if (cosine != 0) {
         const double a = (target.height - bound) / cosine;
@@ -196,21 +222,21 @@ Range depth_range(const Target& target, double cosine, double bound) {
     return {std::max(slab.low, target.distance.low), std::min(slab.high, target.distance.high)};
 }
 
-std::optional<Sighting> sight(const Target& target, const dvec3& direction, double bound) {
+std::optional<Sighting> sight(const Target& target, const dvec3& direction) {
     const double cosine = -glm::dot(target.normal, direction);
     if (cosine <= -target.tilt) return std::nullopt;
-    const Range range = depth_range(target, cosine, bound);
+    const Range range = depth_range(target, cosine);
     if (range.low > range.high) return std::nullopt;
     double least = kInfinity;
     for (int k = 0; k < target.edge_count; ++k) {
         const Edge& edge = target.edges[k];
         const double moment = glm::dot(edge.moment, direction);
-        const double slack = bound * std::max(1.0, edge.distance / range.low);  // (2)
+        const double slack = target.bound * std::max(1.0, edge.distance / range.low);  // (2)
         if (!target.edge_on && moment < -slack) return std::nullopt;
         least = std::min(least, moment);
     }
     const bool hit = target.height > 0 && cosine > 0 && least >= 0;
-    const bool sure = hit && !target.edge_on && least > bound;  // (3)
+    const bool sure = hit && !target.edge_on && least > target.bound;  // (3)
     return Sighting{hit, sure, target.height / cosine, range};
 }
 
@@ -245,14 +271,14 @@ std::vector<dvec3> row_directions(const Shooter& shooter, int row, int resolutio
 }
 
 std::vector<Proxel> project_row(std::span<const Target> targets, const Shooter& shooter, int row,
-                                int resolution, double bound) {
+                                int resolution) {
     const std::vector<dvec3> directions = row_directions(shooter, row, resolution);
     std::vector<Proxel> proxels(directions.size());
     for (const Target& target : targets) {
         if (row < target.first_row || row > target.last_row) continue;
         for (int column = target.first_column; column <= target.last_column; ++column) {
             if (!in_disk(column, row, resolution)) continue;
-            const auto sighting = sight(target, directions[column], bound);
+            const auto sighting = sight(target, directions[column]);
             if (sighting) record(proxels[column], target.polygon, *sighting);
         }
     }
@@ -289,13 +315,13 @@ std::uint64_t Truth::count(int candidate) const {
 }
 
 Truth project(const Shooter& shooter, std::span<const Polygon> polygons, int resolution,
-              double bound) {
+              const Bound& bound) {
     const std::vector<Target> targets = targets_of(polygons, shooter, resolution, bound);
     Truth truth;
     truth.resolution = resolution;
     truth.owner.assign(std::size_t(resolution) * resolution, kOutsideDisk);
     for (int row = 0; row < resolution; ++row) {
-        const auto proxels = project_row(targets, shooter, row, resolution, bound);
+        const auto proxels = project_row(targets, shooter, row, resolution);
         for (int column = 0; column < resolution; ++column) {
             if (!in_disk(column, row, resolution)) continue;
             const std::size_t proxel = std::size_t(row) * resolution + column;

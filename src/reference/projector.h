@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <vector>
@@ -38,11 +39,28 @@ struct Truth {
     std::uint64_t count(int candidate) const;  ///< proxels that `candidate` owns
 };
 
+/// How far a point of a polygon may lie from where it is said to: at a distance r from the origin
+/// by up to relative * r + absolute, in the unit of the coordinates.
+struct Bound {
+    double relative = 0, absolute = 0;
+    /// What a normal may be turned by, radians: less than displaced corners turn it, where it is
+    /// known otherwise. The displacement covers what this moves a polygon's points by.
+    double turn = std::numeric_limits<double>::infinity();
+};
+
+/// What the projector's doubles err by, as Bound::relative: below, proxels are not decided in
+/// truth.
+inline constexpr double kProjectorRounding = 2e-15;
+
 /// Owner of each proxel: the nearest polygon that turns its front to the origin, the lowest index
-/// of equally near ones. `bound` is a length in the unit of the coordinates: a proxel is undecided
-/// where polygons whose points moved by up to `bound` relative to the proxel's ray could change its
-/// owner. Polygons move independently, so an edge that two of them share may open by 2 * bound.
+/// of equally near ones. A proxel is undecided where polygons whose points moved by up to `bound`
+/// relative to the proxel's ray could change its owner. Polygons move independently, so an edge
+/// that two of them share may open by twice the bound.
 Truth project(const Shooter& shooter, std::span<const Polygon> polygons, int resolution,
-              double bound = 0);
+              const Bound& bound = {});
+inline Truth project(const Shooter& shooter, std::span<const Polygon> polygons, int resolution,
+                     double absolute) {
+    return project(shooter, polygons, resolution, Bound{.absolute = absolute});
+}
 
 }  // namespace hemirad::reference

@@ -203,6 +203,57 @@ TEST(ProjectorBound, DecidesRaysThatPassAnEdgeByMoreThanTheBound) {
     EXPECT_EQ(at(-1.1e-6).owner[middle], 0);
 }
 
+TEST(ProjectorBound, GrowsWithTheDistanceOfAPolygonsFarthestPoint) {
+    // Two ceilings of one shape in the eye of the shooter, a thousand times as far: the same ray
+    // passes the left edge by the same angle.
+    const auto at = [](double gap, double height) {
+        const Polygon shifted = ceiling(0.5 * height, height, {(0.5 + gap) * height, 0});
+        return project(upward(), {{shifted}}, 65, Bound{.relative = 1e-6})
+            .decided(proxel(32, 32, 65));
+    };
+    const double farthest = std::sqrt(2.25);  // sqrt(1 + 1 + 0.25)
+
+    for (const double height : {1e-3, 1.0, 1e3}) {
+        EXPECT_TRUE(at(1.01e-6 * farthest, height)) << height;
+        EXPECT_FALSE(at(0.99e-6 * farthest, height)) << height;
+    }
+}
+
+TEST(ProjectorBound, LeavesASmallPatchWithItsSideWhereItsNormalIsKnown) {
+    // As small as the bound: its corners alone would not tell front from back.
+    const Polygon back = reversed(ceiling(1e-6, 1));
+    const std::size_t middle = proxel(32, 32, 65);
+
+    const Truth by_corners = project(upward(), {{back}}, 65, Bound{1e-6, 0});
+    const Truth by_normal = project(upward(), {{back}}, 65, Bound{1e-6, 0, 1e-6});
+
+    EXPECT_TRUE(by_corners.admits(middle, 0));
+    EXPECT_FALSE(by_normal.admits(middle, 0));
+}
+
+TEST(ProjectorBound, FindsEdgesOfSmallFarPolygonsWhereTheyAre) {
+    // A triangle of size 1e-9 at distance 1, whose first edge passes a ray by a tenth of that:
+    // products of its corners, of relative error 1e-16 each, would leave it to chance.
+    for (int column = 8; column < 56; ++column) {
+        const double u = double(2 * column + 1 - 64) / 64, v = 1.0 / 64;
+        const glm::dvec3 ray(u, v, std::sqrt(1 - u * u - v * v));
+        const glm::dvec3 across = glm::normalize(glm::cross(ray, glm::dvec3(0.3, 0.9, 0.1)));
+        const glm::dvec3 along = glm::cross(ray, across);
+        const auto is_hit = [&](double gap) {
+            const auto point = [&](double s, double t) {
+                return ray + 1e-9 * (s * along + (t + gap) * across);
+            };
+            const Polygon small = triangle(point(-0.5, 0), point(0.5, 0), point(0, 1));
+            const Truth truth = project(upward(), {{small, reversed(small)}}, 64,
+                                        Bound{.relative = kProjectorRounding});
+            return truth.owner[proxel(column, 32, 64)] != kEscaped;
+        };
+
+        EXPECT_TRUE(is_hit(-0.1)) << column;
+        EXPECT_FALSE(is_hit(0.1)) << column;
+    }
+}
+
 TEST(ProjectorBound, AdmitsWhatLiesBehindAMarginalHit) {
     const std::size_t middle = proxel(32, 32, 65);
 
@@ -253,10 +304,17 @@ TEST(ProjectorBound, NeedsTheOriginClearOfThePolygonToBeSure) {
     EXPECT_TRUE(clear.decided(middle));
 }
 
-std::vector<Polygon> displaced(std::vector<Polygon> triangles, double bound, std::mt19937& random) {
+double at(const Bound& bound, double distance) {
+    return bound.relative * distance + bound.absolute;
+}
+
+std::vector<Polygon> displaced(std::vector<Polygon> triangles, const glm::dvec3& origin,
+                               const Bound& bound, std::mt19937& random) {
     for (Polygon& polygon : triangles) {
-        for (int k = 0; k < 3; ++k)
-            polygon.corners[k] += bound * glm::normalize(random_point(random, 1));
+        for (int k = 0; k < 3; ++k) {
+            const double by = at(bound, glm::distance(polygon.corners[k], origin));
+            polygon.corners[k] += by * glm::normalize(random_point(random, 1));
+        }
         polygon.corners[3] = polygon.corners[2];
     }
     return triangles;
@@ -274,7 +332,8 @@ Shooter somewhere(const std::vector<Polygon>& triangles, unsigned seed) {
 // The bound is a promise: displace every vertex by it, and each owner must be admissible.
 TEST(ProjectorBound, AdmitsTheOwnersOfDisplacedPolygons) {
     const double sizes[] = {0.02, 0.2, 0.8, 2};
-    for (const double bound : {1e-4, 3e-3, 3e-2}) {
+    const Bound bounds[] = {{0, 1e-4}, {0, 3e-3}, {0, 3e-2}, {1e-4, 0}, {3e-3, 1e-5}, {3e-2, 0}};
+    for (const Bound& bound : bounds) {
         std::uint64_t changed = 0, refused = 0;
         for (unsigned seed = 0; seed < 96; ++seed) {
             const auto triangles = soup(40, sizes[seed % 4], seed);
@@ -282,7 +341,8 @@ TEST(ProjectorBound, AdmitsTheOwnersOfDisplacedPolygons) {
             std::mt19937 random(seed);
 
             const Truth truth = project(shooter, triangles, 64, bound);
-            const Truth moved = project(shooter, displaced(triangles, bound, random), 64);
+            const Truth moved =
+                project(shooter, displaced(triangles, shooter.origin, bound, random), 64);
 
             for (std::size_t where = 0; where < moved.owner.size(); ++where) {
                 changed += moved.owner[where] != truth.owner[where];
@@ -290,7 +350,7 @@ TEST(ProjectorBound, AdmitsTheOwnersOfDisplacedPolygons) {
             }
         }
         EXPECT_GT(changed, 0u);
-        EXPECT_EQ(refused, 0u) << "bound " << bound;
+        EXPECT_EQ(refused, 0u) << bound.relative << " r + " << bound.absolute;
     }
 }
 
