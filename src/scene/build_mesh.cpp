@@ -13,6 +13,7 @@
 #include "scene/lay_grid.h"
 #include "scene/limit_reflectance.h"
 #include "scene/mesh.h"
+#include "scene/number_planes.h"
 #include "scene/outlines.h"
 #include "scene/precision.h"
 #include "scene/vertex_welder.h"
@@ -44,6 +45,7 @@ class Mesher {
         add_backs();
         combine_fragments();
         keep_used_vertices();
+        number_planes(precision_, mesh_);
         mesh_.parts = std::move(parts_.parts);
         mesh_.closed = parts_.encloses_all;
         return std::move(mesh_);
