@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "cli/text.h"
 #include "errors.h"
 #include "lightmap/atomic_file.h"
 #include "lightmap/rasterize.h"
@@ -27,9 +29,19 @@ std::vector<fs::path> all_files(const SolveOptions& options) {
 
 /// Emission may be up to what a double holds, a lightmap only what a float does.
 void check_finite(const fs::path& file, const Lightmap& lightmap) {
-    for (const auto& values : lightmap.values)
-        if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-            throw OutputError(printable(file.string()) + ": values are beyond the range of float");
+    const auto check = [&](const std::vector<std::vector<float>>& bands) {
+        for (const auto& values : bands)
+            if (!std::ranges::all_of(values, [](float v) { return std::isfinite(v); }))
+                throw OutputError(printable(file.string()) +
+                                  ": values are beyond the range of float");
+    };
+    check(lightmap.values);
+    for (const auto& [name, bands] : lightmap.layers) check(bands);
+}
+
+/// Below, digits are lost; half has no std::numeric_limits without OpenEXR.
+double least_normal(PixelType type) {
+    return type == PixelType::half ? 0x1p-14 : double{std::numeric_limits<float>::min()};
 }
 
 std::string settings_text(const SolveOptions& options) {
@@ -89,6 +101,22 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
     attributes.push_back({"settings", settings_text(options)});
     write_exr(options.output, lightmap, attributes, options.pixels);
     if (options.preview) write_preview(*options.preview, lightmap);
+}
+
+std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {
+    const double least = least_normal(options.pixels);
+    const auto& bands =
+        options.quantity == Quantity::irradiance ? solution.irradiance : solution.radiosity;
+    std::vector<std::string> faint;
+    for (std::size_t band = 0; band < bands.size(); ++band) {
+        const double brightest = *std::ranges::max_element(bands[band]);
+        if (brightest > 0 && brightest < least)
+            faint.push_back(options.output.string() + ": band \"" + solution.bands[band] +
+                            "\" holds " + number_text(brightest) +
+                            " W/m^2 at most, less than its pixels' " + number_text(least) +
+                            ": digits are lost");
+    }
+    return faint;
 }
 
 }  // namespace hemirad

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,5 +32,9 @@ void check_outputs(const SolveOptions& options);
 /// Lightmap and preview of the solution so far; `error`, if not null, as layer of the lightmap.
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error = nullptr);
+
+/// A warning for each band whose light is so weak that the lightmap's pixels lose digits of all of
+/// it.
+std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution);
 
 }  // namespace hemirad

@@ -46,6 +46,8 @@ Work prepare(SolveOptions& options) {
 }
 
 void require_light(const Work& work) {
+    if (const auto fault = uncountable_light(work.mesh))
+        throw InputError(work.scene.file + ": " + *fault);
     if (emits_light(work.mesh)) return;
     throw InputError(work.scene.file + ": nothing emits light, so there is nothing to solve");
 }
@@ -191,6 +193,12 @@ void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
+void warn_of_faint_light(const SolveOptions& options, Outcome& outcome) {
+    const auto faint = faint_bands(options, outcome.solution);
+    outcome.warnings.insert(outcome.warnings.end(), faint.begin(), faint.end());
+    print_warnings(std::cerr, faint);
+}
+
 int solve(SolveOptions options) {
     const Stopwatch total;
     const auto work = prepare(options);
@@ -208,6 +216,7 @@ int solve(SolveOptions options) {
     options.solver.sampling_error = outcome.accuracy.sampling_error;
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
+    warn_of_faint_light(options, outcome);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "scene/mesh.h"
@@ -14,7 +16,11 @@ struct BandPlan {
     std::vector<std::size_t> solution;  ///< [scene band] index into `solved`
 };
 
+/// Throws InputError where there is uncountable_light().
 BandPlan plan_bands(const Mesh& mesh);
+
+/// What is wrong with a band that emits more or less than numbers of the ledger can hold.
+std::optional<std::string> uncountable_light(const Mesh& mesh);
 
 /// Flux that a band's patches emit on their own, W.
 double emitted_flux(const Mesh& mesh, std::size_t band);
