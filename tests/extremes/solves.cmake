@@ -1,12 +1,20 @@
-# Whole solves. Label extremes: seconds, with all other tests; long: a minute or so; soak: more.
-set(solves_libs hemirad_solver hemirad_reference hemirad_lightmap)
+# Whole solves. Label extremes: seconds, with all other tests; long: half a minute; soak: minutes.
+function(extreme_solves_test name label)
+    hemirad_test(${name} LABEL ${label} LIBS hemirad_solver hemirad_reference hemirad_lightmap
+        SOURCES ${ARGN})
+    target_compile_definitions(${name} PRIVATE HEMI_SCENES="${PROJECT_SOURCE_DIR}/scenes")
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+endfunction()
 
-hemirad_test(extreme_solves_test LABEL extremes LIBS ${solves_libs} SOURCES
-    solves_ledger_test.cpp solves_light_test.cpp solves_scale_test.cpp)
-hemirad_test(extreme_solves_soak_test LABEL soak LIBS ${solves_libs} SOURCES
-    solves_soak_test.cpp)
+extreme_solves_test(extreme_solves_test extremes
+    solves_ledger_test.cpp solves_light_test.cpp solves_plane_test.cpp solves_scale_test.cpp)
+extreme_solves_test(extreme_solves_long_test long solves_long_test.cpp)
+extreme_solves_test(extreme_solves_soak_test soak solves_soak_test.cpp)
 
-foreach(target extreme_solves_test extreme_solves_soak_test)
-    target_compile_definitions(${target} PRIVATE HEMI_SCENES="${PROJECT_SOURCE_DIR}/scenes")
-    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+# One ctest a class, so that they run side by side.
+foreach(group Checker Sizes Emissions Lamps Faces Options)
+    add_test(NAME Extremes.Cli.${group}
+        COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/solves_test.py ${group})
+    set_tests_properties(Extremes.Cli.${group} PROPERTIES LABELS extremes TIMEOUT 300
+        ENVIRONMENT "HEMIRAD=$<TARGET_FILE:hemirad>;POCL_CACHE_DIR=${CMAKE_BINARY_DIR}/pocl-cache;PYTHONDONTWRITEBYTECODE=1")
 endforeach()
