@@ -38,7 +38,8 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh, dou
         << "materials    " << scene.materials.size() << '\n'
         << "surfaces     " << mesh.surfaces.size() << '\n'
         << "patches      " << mesh.patches.size() << " (" << triangles << " of them triangles), "
-        << "--patch-size " << number_text(patch_size) << '\n';
+        << "--patch-size " << number_text(patch_size) << '\n'
+        << "precision    " << mesh.weld << " m, closer vertices are one (--weld)\n";
 }
 
 std::string object_names(const Mesh& mesh, const Part& part) {

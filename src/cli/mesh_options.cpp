@@ -19,6 +19,9 @@ void add_mesh_options(CLI::App& command, MeshSettings& settings) {
               [&](const OptionValue& value) {
                   settings.backfaces = static_cast<Backfaces>(one_of(value, kBackfaces));
               });
+    add_value(command,
+              {"--weld", "METRES", "closer vertices are one [as precise as the scene's file is]"},
+              [&](const OptionValue& value) { settings.weld = positive_number(value); });
     add_value(command, {"--max-reflectance", "R", "reflectances above R are limited to it [0.98]"},
               [&](const OptionValue& value) { settings.max_reflectance = fraction(value); });
 }

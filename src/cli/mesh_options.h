@@ -5,7 +5,7 @@
 
 namespace hemirad {
 
-/// --patch-size, --backfaces and --max-reflectance.
+/// --patch-size, --backfaces, --weld and --max-reflectance.
 void add_mesh_options(CLI::App& command, MeshSettings& settings);
 
 /// The word that --backfaces takes.

@@ -10,6 +10,7 @@
 #include "scene/find_parts.h"
 #include "scene/flat_faces.h"
 #include "scene/group_flats.h"
+#include "scene/input_file.h"
 #include "scene/lay_grid.h"
 #include "scene/limit_reflectance.h"
 #include "scene/mesh.h"
@@ -29,7 +30,7 @@ class Mesher {
     Mesher(const Scene& scene, const MeshSettings& settings)
         : scene_(scene),
           settings_(settings),
-          precision_(precision_of(scene.positions)),
+          precision_(precision_of(scene, settings.weld)),
           vertices_(precision_.weld, scene.positions.size()) {}
 
     Mesh run() {
@@ -54,6 +55,7 @@ class Mesher {
   private:
     void describe_scene() {
         mesh_.bands = scene_.bands;
+        mesh_.weld = precision_.weld;
         mesh_.objects = scene_.objects;
         mesh_.face_count = static_cast<std::uint32_t>(scene_.faces.size());
         mesh_.warnings = scene_.warnings;
@@ -62,22 +64,13 @@ class Mesher {
         mesh_.materials.push_back({"back", black, black, false});
     }
 
-    // Volumes multiply three coordinates and the welder squares the precision of one.
-    void check_extent() const {
-        constexpr double kLargest = 1e100, kSmallest = 1e-100;
-        const double largest = precision_.weld * 0x1p21;
-        if (largest > kLargest || (largest > 0 && largest < kSmallest))
-            throw InputError(scene_.file + ": the largest coordinate is " +
-                             std::to_string(largest) + " m, out of range");
-    }
-
     void check_patch_size() {
         constexpr double kLeastInPrecisions = 8;  // or vertices on neighbouring lines could weld
-        check_extent();
         if (settings_.patch_size == 0) settings_.patch_size = default_patch_size(scene_);
         if (!(settings_.patch_size > kLeastInPrecisions * precision_.plane))
-            throw InputError(scene_.file + ": patch size " + std::to_string(settings_.patch_size) +
-                             " m is not above the precision of the coordinates");
+            throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
+                             " m is not above the precision of the coordinates, " +
+                             number(kLeastInPrecisions * precision_.plane) + " m");
     }
 
     void flatten_faces() {

@@ -39,10 +39,11 @@ double longest_edge(Outline outline, const Vertices& vertices) {
 bool is_planar(Outline outline, const Vertices& vertices, const glm::dvec3& normal,
                double precision) {
     if (outline.size() == 3) return true;
-    glm::dvec3 mean(0);
-    for (const std::uint32_t v : outline) mean += vertices[v] / double(outline.size());
+    const glm::dvec3& base = vertices[outline[0]];
+    glm::dvec3 mean(0);  // from the base: far from the origin sums would lose digits
+    for (const std::uint32_t v : outline) mean += (vertices[v] - base) / double(outline.size());
     return std::ranges::all_of(outline, [&](std::uint32_t v) {
-        return std::abs(glm::dot(normal, vertices[v] - mean)) <= precision;
+        return std::abs(glm::dot(normal, vertices[v] - base - mean)) <= precision;
     });
 }
 

@@ -29,8 +29,10 @@ class GrowingPlane {
     void add(std::span<const std::uint32_t> outline, const Vertices& vertices) {
         const glm::dvec3 flat = area_vector(outline, vertices);
         const double weight = glm::length(flat);
+        if (area_ == 0) base_ = vertices[outline[0]];
         glm::dvec3 mean(0);
-        for (const std::uint32_t v : outline) mean += vertices[v] / double(outline.size());
+        for (const std::uint32_t v : outline)
+            mean += (vertices[v] - base_) / double(outline.size());
         area_ += weight;
         point_ += (mean - point_) * (weight / area_);
         direction_ += flat;
@@ -40,12 +42,13 @@ class GrowingPlane {
         if (glm::dot(direction_, area_vector(outline, vertices)) <= 0) return false;
         const glm::dvec3 normal = direction_ / glm::length(direction_);
         return std::ranges::all_of(outline, [&](std::uint32_t v) {
-            return std::abs(glm::dot(normal, vertices[v] - point_)) <= precision;
+            return std::abs(glm::dot(normal, vertices[v] - base_ - point_)) <= precision;
         });
     }
 
   private:
-    glm::dvec3 direction_{0}, point_{0};
+    glm::dvec3 direction_{0}, base_{0};
+    glm::dvec3 point_{0};  // from the base: far from the origin sums would lose digits
     double area_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "errors.h"
 #include "scene/edges.h"
 #include "scene/frame.h"
+#include "scene/input_file.h"
 
 namespace hemirad::meshing {
 namespace {
@@ -105,7 +106,7 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
     const double columns = divisions(size.x, patch_size, precision.plane);
     const double rows = divisions(size.y, patch_size, precision.plane);
     if (columns * rows > kMostCells)
-        throw InputError(scene.file + ": patch size " + std::to_string(patch_size) +
+        throw InputError(scene.file + ": patch size " + number(patch_size) +
                          " m is too small: a surface of \"" + scene.objects[face.object] +
                          "\" would have more than 100 million patches");
     Surface surface;

@@ -70,12 +70,13 @@ struct Mesh {
     std::vector<std::string> objects;
     std::uint32_t face_count = 0;  ///< of the scene, dropped ones included
     std::uint32_t dropped_degenerate = 0, dropped_duplicate = 0;
+    double weld = 0;      ///< m; vertices closer than this are one
     bool closed = false;  ///< every part is closed: no proxel can escape
     std::vector<std::string> warnings;
 
-    double area(const Patch& patch) const;            ///< m^2
-    glm::dvec3 normal(const Patch& patch) const;      ///< unit, towards the front
-    glm::dvec3 centroid(const Patch& patch) const;    ///< of its area
+    double area(const Patch& patch) const;          ///< m^2
+    glm::dvec3 normal(const Patch& patch) const;    ///< unit, towards the front
+    glm::dvec3 centroid(const Patch& patch) const;  ///< of its area
 };
 
 enum class Backfaces { automatic, block, cull };
@@ -84,6 +85,7 @@ struct MeshSettings {
     double patch_size = 0;  ///< m; 0: from the scene's extent; infinity: a patch a face, uncut
     Backfaces backfaces = Backfaces::automatic;
     double max_reflectance = 0.98;
+    double weld = 0;  ///< m; vertices closer than this are one; 0: as precise as the scene is
 };
 
 /// Cuts a scene into patches: welds, drops degenerate and duplicate faces (with warnings that give

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "scene/input_line.h"
+#include "scene/quantum.h"
 
 namespace hemirad {
 namespace {
@@ -28,12 +29,13 @@ void for_each_line(std::string_view text, Visit visit) {
     }
 }
 
-glm::dvec3 read_vector(const InputLine& place, std::string_view rest) {
+glm::dvec3 read_vector(const InputLine& place, std::string_view rest, TextQuantum& quantum) {
     glm::dvec3 vector{};
     for (int axis = 0; axis < 3; ++axis) {
         const std::string_view word = next_word(rest);
         vector[axis] = read_number<double>(place, word);
         if (!std::isfinite(vector[axis])) place.fail(in_quotes(word) + " is not finite");
+        quantum.add(word, vector[axis]);
     }
     return vector;
 }
@@ -93,21 +95,25 @@ std::string unfold_lines(const std::string& bytes) {
 
 ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
     ObjNumbers numbers;
+    TextQuantum quantum;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
         const InputLine place{file, number};
-        if (keyword == "v") numbers.positions.push_back(read_vector(place, line));
+        if (keyword == "v") numbers.positions.push_back(read_vector(place, line, quantum));
         if (keyword != "f") return;
         check_face(place, line);
         numbers.face_lines.push_back(number);
     });
+    numbers.quantum = quantum.value();
     return numbers;
 }
 
 void check_mtl_numbers(const InputFile& file, const std::string& text) {
+    TextQuantum of_colours;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
-        if (keyword == "Kd" || keyword == "Ke") read_vector(InputLine{file, number}, line);
+        if (keyword == "Kd" || keyword == "Ke")
+            read_vector(InputLine{file, number}, line, of_colours);
     });
 }
 

@@ -13,6 +13,7 @@ namespace hemirad {
 /// by digit; so it reads the structure, and every number is read and checked here, to the last bit.
 struct ObjNumbers {
     std::vector<glm::dvec3> positions;
+    double quantum = 0;                   ///< m, see Scene
     std::vector<std::size_t> face_lines;  ///< line of each `f`, from 1
 };
 

@@ -11,6 +11,7 @@
 
 #include "scene/gltf_file.h"
 #include "scene/input_file.h"
+#include "scene/quantum.h"
 
 namespace hemirad {
 namespace {
@@ -25,6 +26,7 @@ struct Builder {
 struct PlacedNode {
     std::size_t node;
     glm::dmat4 world_from_node;
+    double quantum = 0;  ///< m, of its place
 };
 
 std::string node_path(std::size_t node) { return "nodes/" + std::to_string(node); }
@@ -51,6 +53,26 @@ glm::dmat4 parent_from_node(const GltfFile& gltf, std::size_t index) {
         result[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1);
     }
     return result;
+}
+
+/// By how much an axis grows at most.
+double largest_growth(const glm::dmat4& matrix) {
+    double largest = 0;
+    for (int row = 0; row < 3; ++row)
+        largest = std::max(largest, std::abs(matrix[0][row]) + std::abs(matrix[1][row]) +
+                                        std::abs(matrix[2][row]));
+    return largest;
+}
+
+/// Places are doubles, unless they are floats to the last digit: such was the exporter's
+/// arithmetic.
+double place_quantum(const glm::dmat4& parent_from_node) {
+    double quantum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = parent_from_node[3][axis];
+        if (is_float_in_full(at)) quantum = std::max(quantum, half_float_ulp(at));
+    }
+    return quantum;
 }
 
 /// glTF 2.0, sec. 3.5.2: the nodes form trees; a node has at most one parent.
@@ -113,18 +135,21 @@ std::vector<PlacedNode> place_nodes(const GltfFile& gltf) {
     const std::vector<int> parent = parents(gltf);
     check_cycles(gltf, parent);
     std::vector<PlacedNode> open, placed;
-    const auto push = [&](const auto& nodes, const glm::dmat4& world_from_parent) {
+    const auto push = [&](const auto& nodes, const PlacedNode& above) {
         for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
             const auto index = static_cast<std::size_t>(*node);
-            open.push_back({index, world_from_parent * parent_from_node(gltf, index)});
+            const glm::dmat4 in_parent = parent_from_node(gltf, index);
+            open.push_back(
+                {index, above.world_from_node * in_parent,
+                 above.quantum + largest_growth(above.world_from_node) * place_quantum(in_parent)});
         }
     };
-    push(scene_nodes(gltf, parent), glm::dmat4(1));
+    push(scene_nodes(gltf, parent), PlacedNode{0, glm::dmat4(1)});
     while (!open.empty()) {
         placed.push_back(open.back());
         open.pop_back();
         const PlacedNode node = placed.back();
-        push(gltf.model.nodes[node.node].children, node.world_from_node);
+        push(gltf.model.nodes[node.node].children, node);
     }
     return placed;
 }
@@ -158,6 +183,11 @@ VertexRange add_positions(Builder& builder, const PlacedNode& node, int accessor
     if (range.first + range.count > std::numeric_limits<std::uint32_t>::max()) {
         fail(builder.gltf.file, node_path(node.node), "the scene has too many vertices");
     }
+    double largest = 0;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    builder.scene.quantum =
+        std::max(builder.scene.quantum,
+                 node.quantum + largest_growth(node.world_from_node) * half_float_ulp(largest));
     for (std::size_t i = 0; i < range.count; ++i) {
         const glm::dvec4 local(glm::make_vec3(&values[3 * i]), 1);
         const glm::dvec3 world(node.world_from_node * local);

@@ -185,6 +185,7 @@ Scene read_obj(const InputFile& file) {
     std::string warning, error;
     tinyobj::LoadObjWithCallback(stream, callbacks(), &obj, &library, &warning, &error);
     if (!error.empty()) fail(file, "OBJ", printable(error));
+    obj.scene.quantum = obj.numbers.quantum;
     obj.scene.positions = std::move(obj.numbers.positions);
     return std::move(obj.scene);
 }

@@ -86,7 +86,7 @@ void read_vertex(Vs3File& vs3, Vs3Fields& fields) {
     const int number = fields.whole_number("vertex number");
     if (number != int(vs3.vertices.size()) + 1)
         fields.place().fail(named("vertex", number) + " is out of sequence");
-    const double x = fields.number("x"), y = fields.number("y"), z = fields.number("z");
+    const double x = fields.coordinate("x"), y = fields.coordinate("y"), z = fields.coordinate("z");
     vs3.vertices.emplace_back(x, y, z);
 }
 
@@ -190,10 +190,11 @@ void read_surface(Vs3File& vs3, Vs3Fields& fields, char card, Format format) {
 void read_cards(Vs3File& vs3) {
     Vs3Fields fields(vs3.file);
     Format format = Format::none;
+    bool any_blast = false;  // whose corners are computed from angles
     while (fields.next_line()) {
         const char card = fields.card();
         if (card == 'F' || card == 'G')
-            format = read_format(fields);
+            format = read_format(fields), any_blast |= format == Format::blast;
         else if (card == 'C')
             read_controls(vs3, fields);
         else if (card == 'V')
@@ -207,6 +208,7 @@ void read_cards(Vs3File& vs3) {
         else if (card != 'T')
             fields.place().fail("begins with none of T, C, F, V, S, N, O and E");
     }
+    if (!any_blast) vs3.scene.quantum = fields.quantum();
 }
 
 /// Files repeat a corner of a triangle, or leave the fourth out.

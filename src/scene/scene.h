@@ -30,8 +30,11 @@ struct Scene {
     std::vector<glm::dvec3> positions;
     std::vector<Face> faces;  ///< in file order
     std::vector<Material> materials;
-    std::vector<std::string> objects;   ///< name of each `o`/`g`, glTF node or View3D surface
+    std::vector<std::string> objects;  ///< name of each `o`/`g`, glTF node or View3D surface
     std::vector<std::uint32_t> obstructions = {};  ///< objects that hide others, no more
+    /// m; an axis of a position was rounded by this at most when it was written. 0: unknown, the
+    /// file held world coordinates as floats.
+    double quantum = 0;
     std::vector<std::string> warnings;  ///< one line each, for people
 };
 

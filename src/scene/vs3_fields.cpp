@@ -58,6 +58,12 @@ double Vs3Fields::number(const char* what) {
     return value;
 }
 
+double Vs3Fields::coordinate(const char* what) {
+    const double value = number(what);
+    quantum_.add(words_[next_ - 1], value);
+    return value;
+}
+
 double Vs3Fields::number_further_on(const char* what) {
     if (!has_more()) next_line();
     return number(what);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/input_line.h"
+#include "scene/quantum.h"
 
 namespace hemirad {
 
@@ -28,6 +29,9 @@ class Vs3Fields {
     double number(const char* what);
     /// The same from this line or one of the next.
     double number_further_on(const char* what);
+    /// A number that counts for `quantum`.
+    double coordinate(const char* what);
+    double quantum() const { return quantum_.value(); }  ///< see Scene
 
   private:
     const InputFile& file_;
@@ -35,6 +39,7 @@ class Vs3Fields {
     std::size_t line_number_ = 0;
     std::vector<std::string_view> words_ = {};
     std::size_t next_ = 0;
+    TextQuantum quantum_ = {};
 };
 
 }  // namespace hemirad
