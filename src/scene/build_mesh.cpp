@@ -14,6 +14,7 @@
 #include "scene/lay_grid.h"
 #include "scene/limit_reflectance.h"
 #include "scene/mesh.h"
+#include "scene/move_onto_edges.h"
 #include "scene/number_planes.h"
 #include "scene/outlines.h"
 #include "scene/precision.h"
@@ -79,6 +80,7 @@ class Mesher {
         for (const auto& position : scene_.positions)
             vertex_of_position.push_back(vertices_.add(position));
         const Outlines outlines = outline_faces(scene_.faces, vertex_of_position);
+        mesh_.moved_vertices = move_onto_edges(outlines, precision_, vertices_);
         faces_ = flatten(scene_, outlines, vertices_.positions(), precision_);
         if (faces_.flats.empty()) throw InputError(scene_.file + ": no face has an area");
         mesh_.dropped_degenerate = faces_.degenerate_count;

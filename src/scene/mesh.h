@@ -70,8 +70,9 @@ struct Mesh {
     std::vector<std::string> objects;
     std::uint32_t face_count = 0;  ///< of the scene, dropped ones included
     std::uint32_t dropped_degenerate = 0, dropped_duplicate = 0;
-    double weld = 0;      ///< m; vertices closer than this are one
-    bool closed = false;  ///< every part is closed: no proxel can escape
+    std::uint32_t moved_vertices = 0;  ///< onto edges that they lay beside by less than 2 weld
+    double weld = 0;                   ///< m; vertices closer than this are one
+    bool closed = false;               ///< every part is closed: no proxel can escape
     std::vector<std::string> warnings;
 
     double area(const Patch& patch) const;          ///< m^2

@@ -35,6 +35,12 @@ std::uint32_t VertexWelder::add(const glm::dvec3& position) {
     return vertex;
 }
 
+void VertexWelder::move(std::uint32_t vertex, const glm::dvec3& to) {
+    unlink(vertex);
+    positions_[vertex] = to;
+    link(vertex);
+}
+
 VertexWelder::Cell VertexWelder::cell_of(const glm::dvec3& position) const {
     return {static_cast<std::int64_t>(std::floor(position.x / cell_size_)),
             static_cast<std::int64_t>(std::floor(position.y / cell_size_)),
@@ -80,6 +86,12 @@ void VertexWelder::link(std::uint32_t vertex) {
     std::uint32_t& head = heads_[bucket_of(cell_of(positions_[vertex]))];
     next_[vertex] = head;
     head = vertex;
+}
+
+void VertexWelder::unlink(std::uint32_t vertex) {
+    std::uint32_t* link = &heads_[bucket_of(cell_of(positions_[vertex]))];
+    while (*link != vertex) link = &next_[*link];
+    *link = next_[vertex];
 }
 
 void VertexWelder::grow() {

@@ -14,6 +14,7 @@ class VertexWelder {
     explicit VertexWelder(double tolerance, std::size_t expected = 0);
 
     std::uint32_t add(const glm::dvec3& position);
+    void move(std::uint32_t vertex, const glm::dvec3& to);
 
     const std::vector<glm::dvec3>& positions() const { return positions_; }
     const glm::dvec3& operator[](std::uint32_t vertex) const { return positions_[vertex]; }
@@ -26,6 +27,7 @@ class VertexWelder {
     std::uint32_t find_in(const Cell& cell, const glm::dvec3& position) const;
     std::uint32_t find(const glm::dvec3& position) const;
     void link(std::uint32_t vertex);
+    void unlink(std::uint32_t vertex);
     void grow();
 
     double tolerance_;
