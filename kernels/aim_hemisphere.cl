@@ -15,27 +15,31 @@ static float disk_angle(int patch, int part) {
     return (1.0f / 12 + turn * (1.0f / 3 / 4294967296.0f)) * M_PI_F;
 }
 
-static float3 corner_of(const __global float* corners, int stride, int patch, int k) {
-    const __global float* at = corners + 3 * k * stride + patch;
-    return (float3)(at[0], at[stride], at[2 * stride]);
+static int3 corner_of(const __global int* corners, int stride, int patch, int k) {
+    const __global int* at = corners + 3 * k * stride + patch;
+    return (int3)(at[0], at[stride], at[2 * stride]);
+}
+
+// Points of a patch are weights of its four corners, which add up to 1.
+static float3 point_of(const float3* corner, float4 weights) {
+    return corner[0] * weights.x + corner[1] * weights.y + corner[2] * weights.z +
+           corner[3] * weights.w;
 }
 
 // Sample `part` of a triangle: the centroid of one of its samples^2 congruent parts, in rows of
 // 1, 3, 5, ... from corner a.
-static float3 triangle_sample(float3 a, float3 b, float3 c, int part, int samples) {
+static float4 triangle_sample(int part, int samples) {
     int row = 0;
     while ((row + 1) * (row + 1) <= part) ++row;
     const int along = part - row * row;
     // Centroids in thirds of a step: upright parts (even `along`) and inverted ones alternate.
     const float down = (row + ((along & 1) != 0 ? 1.0f / 3.0f : 2.0f / 3.0f)) / samples;
     const float across = (along / 2 + ((along & 1) != 0 ? 2.0f / 3.0f : 1.0f / 3.0f)) / samples;
-    return a + (b - a) * (down - across) + (c - a) * across;
+    return (float4)(1.0f - down, down - across, across, 0.0f);
 }
 
-static float3 quad_point(const float3* corner, float s, float t) {
-    const float3 low = corner[0] + (corner[1] - corner[0]) * s;
-    const float3 high = corner[3] + (corner[2] - corner[3]) * s;
-    return low + (high - low) * t;
+static float4 quad_point(float s, float t) {
+    return (float4)((1.0f - s) * (1.0f - t), s * (1.0f - t), s * t, (1.0f - s) * t);
 }
 
 // Where a density that runs linearly from `low` at 0 to `high` at 1 has the share q below it.
@@ -44,16 +48,18 @@ static float quantile(float low, float high, float q) {
     return low + root > 0.0f ? q * (low + high) / (low + root) : q;
 }
 
-// Centroid of a quad: that of its two triangles by their areas.
-static float3 quad_centroid(float3 a, float3 b, float3 c, float3 d) {
-    const float lower = length(cross(b - a, c - a)), upper = length(cross(c - a, d - a));
+// Centroid of the quad between four points of a patch: that of its two triangles by their areas.
+static float4 quad_centroid(const float3* corner, float4 a, float4 b, float4 c, float4 d) {
+    const float3 from = point_of(corner, a), across = point_of(corner, c) - from;
+    const float lower = length(cross(point_of(corner, b) - from, across));
+    const float upper = length(cross(across, point_of(corner, d) - from));
     const float share = lower + upper > 0.0f ? lower / (lower + upper) : 0.5f;
     return ((a + c) + (b * share + d * (1.0f - share))) * (1.0f / 3.0f);
 }
 
 // Sample `part` of a quad: the centroid of one of samples^2 parts of equal area. The area of the
 // bilinear map's cells is linear in s and t, so rows and then cells end at quantiles of it.
-static float3 quad_sample(const float3* corner, int part, int samples) {
+static float4 quad_sample(const float3* corner, int part, int samples) {
     const float3 low = corner[1] - corner[0], high = corner[2] - corner[3];
     const float3 left = corner[3] - corner[0], right = corner[2] - corner[1];
     const float area00 = length(cross(low, left)), area10 = length(cross(low, right));
@@ -65,8 +71,26 @@ static float3 quad_sample(const float3* corner, int part, int samples) {
     const float at_left = mix(area00, area01, t), at_right = mix(area10, area11, t);
     const float s0 = quantile(at_left, at_right, (float)column / samples);
     const float s1 = quantile(at_left, at_right, (float)(column + 1) / samples);
-    return quad_centroid(quad_point(corner, s0, t0), quad_point(corner, s1, t0),
-                         quad_point(corner, s1, t1), quad_point(corner, s0, t1));
+    return quad_centroid(corner, quad_point(s0, t0), quad_point(s1, t0), quad_point(s1, t1),
+                         quad_point(s0, t1));
+}
+
+// The grid's point nearest to the sample. In whole numbers, so that it lies in the patch's plane as
+// well as a corner does: weights may be rounded, as long as they add up to 1.
+static int3 on_grid(const int3* corner, float4 sample) {
+    const int4 weights = convert_int4_rte(sample * 16777216.0f);
+    const long3 sum = (long)weights.y * convert_long3(corner[1] - corner[0]) +
+                      (long)weights.z * convert_long3(corner[2] - corner[0]) +
+                      (long)weights.w * convert_long3(corner[3] - corner[0]);
+    return corner[0] + convert_int3((sum + 8388608L) >> 24L);
+}
+
+// The first edge, unless a repeated corner has left it without direction.
+static float3 proper_edge(const float3* corner) {
+    float3 edge = corner[1] - corner[0];
+    for (int k = 1; k < 4; ++k)
+        edge = dot(edge, edge) > 0.0f ? edge : corner[(k + 1) % 4] - corner[k];
+    return edge;
 }
 
 static void store_axis(float3 axis, __global float* to) {
@@ -75,24 +99,29 @@ static void store_axis(float3 axis, __global float* to) {
     to[2] = axis.z;
 }
 
-__kernel void aim_hemisphere(__global Shot* shot, const __global float* corners,
+__kernel void aim_hemisphere(__global Shot* shot, const __global int* corners,
                              const __global float* normals, int stride,
                              const __global int* patch_samples) {
     if (shot->status != kRunning) return;
     const int patch = shot->patch, samples = patch_samples[patch], part = shot->part;
     ++shot->part;
     shot->part_count = samples * samples;
-    float3 corner[4];
-    for (int k = 0; k < 4; ++k)
-        corner[k] = corner_of(corners, stride, patch, min(k, CORNERS - 1));
-    const bool triangle = all(corner[3] == corner[2]);
-    store_axis(triangle ? triangle_sample(corner[0], corner[1], corner[2], part, samples)
-                        : quad_sample(corner, part, samples),
-               shot->origin);
+    int3 steps[4];
+    float3 corner[4];  // from the first one: as exact as the patch is small
+    for (int k = 0; k < 4; ++k) {
+        steps[k] = corner_of(corners, stride, patch, min(k, CORNERS - 1));
+        corner[k] = kGridStep * convert_float3(steps[k] - steps[0]);
+    }
+    const bool triangle = all(steps[3] == steps[2]);
+    const int3 origin = on_grid(steps, triangle ? triangle_sample(part, samples)
+                                                : quad_sample(corner, part, samples));
+    shot->origin[0] = origin.x;
+    shot->origin[1] = origin.y;
+    shot->origin[2] = origin.z;
 
     const float3 normal =
         (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
-    const float3 edge = corner[1] - corner[0];
+    const float3 edge = proper_edge(corner);
     const float3 along = normalize(edge - normal * dot(edge, normal));
     const float angle = disk_angle(patch, part);
     const float3 u_axis = cos(angle) * along + sin(angle) * cross(normal, along);

@@ -19,7 +19,7 @@ static void close_books(__global Shot* shot, const __global float* shot_flux, ui
     const int shot_proxels = disk_proxels * shot->part_count;
     const int surplus = (int)(received_proxels + escapes) - shot_proxels;
 #ifndef FORM_FACTOR_ANALYTIC
-    shot->escaped_fraction = escapes * (1.0f / shot_proxels);
+    shot->escaped_fraction = (float)escapes / shot_proxels;
 #endif
     for (int band = 0; band < BANDS; ++band)
         add_escaped(escaped + band, escaped + BANDS + band,
@@ -28,8 +28,8 @@ static void close_books(__global Shot* shot, const __global float* shot_flux, ui
     shot->most_surplus = max(shot->most_surplus, surplus);
     shot->escaped_proxels = escapes;
     ++shot->shots;
-    // Of proxels that escaped, of those outside the disk, and of those that all patches own where
-    // estimate_form_factors has spent the counts.
+    // Of proxels that escaped, of those outside the disk, and of those that patches own but are not
+    // counted for them: see estimate_form_factors.cl and coverage.clh.
     for (int kind = 0; kind < kSpareCounts; ++kind) escaped_count[kind] = 0;
 }
 
@@ -59,7 +59,8 @@ static void aim_at(__global Shot* shot, BlockSummary best, const __local float* 
     shot->part = 0;
     if (shot->shots >= shot->shot_limit) shot->status = kPaused;
     if (unshot_fraction < tolerance) shot->status = kConverged;
-    if (!(best.energy > 0.0f)) shot->status = kExhausted;
+    // A part of the flux that is no normal float: reflections would round it up again, for ever.
+    if (!(best.energy > FLT_MIN)) shot->status = kExhausted;
 }
 
 __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* summaries,

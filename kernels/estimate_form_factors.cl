@@ -10,23 +10,31 @@
 // rounding.
 #define kSamePlane 1e-4f
 
-static float3 float3_at(const __global float* from, int stride, int patch) {
-    return (float3)(from[patch], from[stride + patch], from[2 * stride + patch]);
+static float3 normal_at(const __global float* normals, int stride, int patch) {
+    return (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
+}
+
+// Corner k of a patch as seen from the hemisphere's centre.
+static float3 corner_at(const __global Shot* shot, const __global int* corners, int stride,
+                        int patch, int k) {
+    const __global int* at = corners + 3 * k * stride + patch;
+    const int3 corner = (int3)(at[0], at[stride], at[2 * stride]);
+    return kGridStep *
+           convert_float3(corner - (int3)(shot->origin[0], shot->origin[1], shot->origin[2]));
 }
 
 // Whether the plane of `owner` cuts the way from the hemisphere's centre to `middle`.
-static bool hides(const __global Shot* shot, const __global float* corners,
+static bool hides(const __global Shot* shot, const __global int* corners,
                   const __global float* normals, int stride, int owner, float3 middle) {
-    const float3 origin = (float3)(shot->origin[0], shot->origin[1], shot->origin[2]);
-    const float3 normal = float3_at(normals, stride, owner);
-    const float height = dot(normal, float3_at(corners, stride, owner) - origin);
+    const float3 normal = normal_at(normals, stride, owner);
+    const float height = dot(normal, corner_at(shot, corners, stride, owner, 0));
     const float along = dot(normal, middle);
     return along < 0.0f && height > (1.0f - kSamePlane) * along;
 }
 
 // A patch that covers no proxel's centre is as visible as its middle, and this is hidden where
 // whoever owns the proxel around it lies before it.
-static float sub_proxel_visibility(const __global Shot* shot, const __global float* corners,
+static float sub_proxel_visibility(const __global Shot* shot, const __global int* corners,
                                    const __global float* normals, int stride,
                                    const __global int* owners, int patch, float3 direction) {
     const float3 unit = normalize(direction);
@@ -34,14 +42,12 @@ static float sub_proxel_visibility(const __global Shot* shot, const __global flo
     const int row = clamp((int)((unit.y + 1.0f) * (0.5f * RESOLUTION)), 0, RESOLUTION - 1);
     const int owner = owners[proxel_place(column, row)];
     if (owner >= stride || owner == patch) return 1.0f;
-    const float3 origin = (float3)(shot->origin[0], shot->origin[1], shot->origin[2]);
     float3 middle = 0.0f;
-    for (int k = 0; k < CORNERS; ++k)
-        middle += float3_at(corners + 3 * k * stride, stride, patch) - origin;
+    for (int k = 0; k < CORNERS; ++k) middle += corner_at(shot, corners, stride, patch, k);
     return hides(shot, corners, normals, stride, owner, middle / (float)CORNERS) ? 0.0f : 1.0f;
 }
 
-__kernel void estimate_form_factors(const __global Shot* shot, const __global float* corners,
+__kernel void estimate_form_factors(const __global Shot* shot, const __global int* corners,
                                     const __global float* normals, int stride, int depth,
                                     const __global int* stack, const __global int* stack_height,
                                     const __global int* owners, __global int* proxel_count,
@@ -56,6 +62,7 @@ __kernel void estimate_form_factors(const __global Shot* shot, const __global fl
         take_level(stack + pe * depth + level, count, patches);
         Point corner[CORNERS];
         gather_corners(shot, corners, stride, patches, corner);
+        turn_corners(shot, corner);
         const real_v unblocked = point_to_polygon(corner);
         Point middle = corner[0];
         for (int k = 1; k < CORNERS; ++k) middle = sum_v(middle, corner[k]);

@@ -29,7 +29,8 @@ static void broadcast(const __global Projection* projections, const __global int
 #endif
 
 // One patch in one column of areas: each PE evaluates its proxels of the rows that the bounding
-// rectangle touches. A proxel is inside where no arc's value has its sign bit set. Outside the
+// rectangle touches. A proxel is inside where no arc's value has its sign bit set: where the least
+// of their bits, as integers, has not. Outside the
 // rectangle it never is: beyond a sharp corner the arcs' margins reach farther than the
 // rectangle's, and which proxels are evaluated there depends on the array.
 static void project(const __local Projection* patch, int tile, int area_column, int pe,
@@ -55,21 +56,22 @@ static void project(const __local Projection* patch, int tile, int area_column, 
         const int at = plural_index(area_row * AREA_COLUMNS + area_column, pe);
         const float v = row_centre(row);
         const real_v root = roots[at], nearest = depth[at];
-        int_v outside = 0;
+        int_v least = INT_MAX;
         UNROLLED for (int k = 0; k < CORNERS; ++k) {
-            outside |= as_int_v(
-                value_at(patch->edge[k][1], patch->edge[k][2], edge[k], v, root));
+            least = min(least, as_int_v(value_at(patch->edge[k][1], patch->edge[k][2], edge[k], v,
+                                                 root)));
             edge[k] = next_linear(edge[k], patch->edge[k][1]);
         }
-        const int_v inside = ~(outside >> 31) & in_columns & in_rows;
+        const int_v inside = ~(least >> 31) & in_columns & in_rows;
+        const int_v certain = well_inside(least, inside);
         const real_v distance =
             value_at(patch->depth[1], patch->depth[2], depth_linear, v, root);
         depth_linear = next_linear(depth_linear, patch->depth[1]);
         const int_v nearer = inside & less_v(distance, nearest);
         depth[at] = choose_v(nearer, distance, nearest);
-        owner[at] = select(owner[at], (int_v)patch->patch, nearer);
+        owner[at] = select(owner[at], claim_of(patch->patch, certain), nearer);
         count_useful(activity, inside, root);
-        count_covered(coverage, inside, root);
+        count_covered(coverage, certain, root);
     }
 }
 
@@ -122,12 +124,16 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
     add_activity(&activity, activity_totals);
 #ifdef ACCUMULATE_XNET
     sum_by_xnet(owner, pe, projections, lists + begin, end - begin, wire, proxel_count);
-    if (running) atomic_add(proxel_count + escaped, owned_by(owner, pe, escaped));
+    if (running) {
+        atomic_add(proxel_count + escaped, owned_by(owner, pe, escaped));
+        atomic_add(proxel_count + escaped + 2, marginal_claims(owner, pe));
+    }
 #else
-    if (running) sum_by_histogram(owner, pe, proxel_count);
+    if (running) sum_by_histogram(owner, pe, escaped, proxel_count);
 #endif
 #ifdef KEEP_OWNERS
     for (int layer = 0; layer < LAYERS; ++layer)
-        owners[tile * TILE_VECTORS + plural_index(layer, pe)] = owner[plural_index(layer, pe)];
+        owners[tile * TILE_VECTORS + plural_index(layer, pe)] =
+            owner_of(owner[plural_index(layer, pe)]);
 #endif
 }

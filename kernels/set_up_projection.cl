@@ -3,14 +3,35 @@
 #include "clip.clh"
 #include "patches.clh"
 
+// How far the shooter lies in front of a patch's plane, by the corner that errs least. cull_patches
+// has shown it to be more than kGridMargin.
+static real_v height_over(Point normal, const Point* corner) {
+    real_v height = -dot_v(normal, corner[0]), nearest = dot_v(corner[0], corner[0]);
+    for (int k = 1; k < CORNERS; ++k) {
+        const real_v squared = dot_v(corner[k], corner[k]);
+        const int_v nearer = less_v(squared, nearest);
+        nearest = choose_v(nearer, squared, nearest);
+        height = choose_v(nearer, -dot_v(normal, corner[k]), height);
+    }
+    return fmax(height, (real_v)kGridMargin);
+}
+
 // -1/rho of app. A as a plane: the nearest patch has the smallest value.
-static Point depth_plane(const __global Shot* shot, Point normal, Point corner) {
-    return scaled_v(-1.0f / dot_v(normal, corner), rotated_into(shot, normal));
+static Point depth_plane(const __global Shot* shot, Point normal, real_v height) {
+    return scaled_v(1.0f / height, rotated_into(shot, normal));
 }
 
 // Spencer's approximation (app. A): -1/rho of one point, for all proxels of a patch.
 static Point constant_depth(Point centre) {
     const Point result = {-1.0f / sqrt(dot_v(centre, centre)), (real_v)0.0f, (real_v)0.0f};
+    return result;
+}
+
+// An edge's plane with its displacement by kEdgeMargin of its reach for a unit. A repeated corner,
+// or an edge that points at the shooter, bounds nothing above the horizon.
+static Point relative_edge(Point plane, Point p, Point q) {
+    Point result = scaled_v(1.0f / edge_reach(p, q), plane);
+    result.z = choose_v(equal_v(dot_v(plane, plane), (real_v)0.0f), (real_v)1.0f, result.z);
     return result;
 }
 
@@ -25,13 +46,12 @@ static void store_projection(__global Projection* to, int lane, int patch, const
     for (int k = 0; k < CORNERS; ++k) store_point(planes[k], lane, to->edge[k]);
     store_point(depth, lane, to->depth);
     to->patch = patch;
-    const float distance = lane_of(bounds.distance, lane);
-    to->columns = proxel_range(lane_of(bounds.u_least, lane), lane_of(bounds.u_most, lane),
-                               distance);
-    to->rows = proxel_range(lane_of(bounds.v_least, lane), lane_of(bounds.v_most, lane), distance);
+    const float play = play_of(lane_of(bounds.distance, lane), lane_of(bounds.reach, lane));
+    to->columns = proxel_range(lane_of(bounds.u_least, lane), lane_of(bounds.u_most, lane), play);
+    to->rows = proxel_range(lane_of(bounds.v_least, lane), lane_of(bounds.v_most, lane), play);
 }
 
-__kernel void set_up_projection(const __global Shot* shot, const __global float* corners,
+__kernel void set_up_projection(const __global Shot* shot, const __global int* corners,
                                 const __global float* normals, int stride, int depth,
                                 const __global int* stack, const __global int* stack_height,
                                 __global Projection* projections) {
@@ -44,18 +64,21 @@ __kernel void set_up_projection(const __global Shot* shot, const __global float*
         take_level(stack + pe * depth + level, count, patches);
         Point corner[CORNERS], planes[CORNERS];
         gather_corners(shot, corners, stride, patches, corner);
+        const Point normal = gathered_points(normals, stride, patches);
+        const Point true_depth = depth_plane(shot, normal, height_over(normal, corner));
+        turn_corners(shot, corner);
         for (int k = 0; k < CORNERS; ++k)
             planes[k] = edge_plane(corner[k], corner[(k + 1) % CORNERS]);
+        const Bounds bounds = clipped_bounds(corner, planes);
+        for (int k = 0; k < CORNERS; ++k)
+            planes[k] = relative_edge(planes[k], corner[k], corner[(k + 1) % CORNERS]);
 #ifdef DISTANCE_CONSTANT
         Point centre = corner[0];
         for (int k = 1; k < CORNERS; ++k) centre = sum_v(centre, corner[k]);
         const Point depth_of = constant_depth(scaled_v((real_v)(1.0f / CORNERS), centre));
 #else
-        const Point depth_of = depth_plane(
-            shot, gathered_points(normals, stride, patches),
-            relative_to(shot, gathered_points(corners, stride, patches)));
+        const Point depth_of = true_depth;
 #endif
-        const Bounds bounds = clipped_bounds(corner, planes);
 
         __global Projection* to = projections + pe * depth + level;
         for (int lane = 0; lane < count; ++lane)

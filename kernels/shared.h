@@ -13,18 +13,23 @@ typedef int int32_t;
 typedef uint uint32_t;
 #endif
 
-// The scene is normalised into [-1, 1]. kEdgeMargin is the length by which every arc is moved
-// outwards, so that no proxel is lost between neighbours; what two patches then both claim goes
-// to the nearer one. It stands for the rounding of an arc's value: with e = 2^-24 and distances up
-// to r, a vertex is displaced by 0.9 e when it becomes a float, by r e in its difference to the
-// shooter, and rotation, cross product, normalisation and evaluation add about 3 r e each where
-// their errors are random. Across half of the scene, r = 1, that is 12.6 e = 7.5e-7. The errors of
-// all steps in one direction at opposite corners (r = 3.5) would be four times as much; no case
-// of that is known, and the tests look for it.
+// The scene is normalised until half of its largest side is in [1/2, 1), and coordinates are whole
+// steps of 2^-30 of that. A difference to the shooter is then exact before it becomes a float, so
+// what is near to it is known as well at the rim of a scene as in the middle.
+#define kGridStep (1.0f / 1073741824.0f)
+// What the grid displaces a plane by against the shooter: half a step an axis for a corner of either
+// patch, and for the shooter's origin, 3 sqrt(3) / 2 steps in all.
+#define kGridMargin 2.5e-9f
+
+// An arc is moved outwards by kEdgeMargin of the distance r of its farther end (and kGridMargin),
+// so that single precision loses no proxel between neighbours; what two patches then both claim
+// goes to the nearer one. With e = 2^-24, the worst that can befall an edge's moment is, in e r: its
+// ends' conversion 1 and turn into the shooter's frame 3, the difference of the ends 1, cross
+// product 2, two scalings 2, evaluation 3: in all 12 e = 7.2e-7.
 #define kEdgeMargin 7.5e-7f
 // A patch is seen only if the shooter lies in front of its plane, and it in front of the
-// shooter's, by more than that: below, nothing but rounding tells front from back. Half of the
-// margin of the edges, so that neighbours cover what is dropped here.
+// shooter's, by more than that of a corner's distance (and kGridMargin): below, nothing but rounding
+// tells front from back. The normal, the corner and three roundings of their product: 5 e = 3e-7.
 #define kPlaneMargin 3.5e-7f
 
 // What update_radiosity and choose_shooter add up at a time. Fixed, so that sums of floats have
@@ -46,7 +51,7 @@ typedef uint uint32_t;
 
 // What the PEs know of the shooting patch, and the host of the progress.
 typedef struct {
-    float origin[3];  // one of the shooter's hemispheres, normalised scene units
+    int32_t origin[3];  // one of the shooter's hemispheres, grid steps
     float u_axis[3], v_axis[3], normal[3];
     int32_t patch;
     uint32_t part, part_count;  // its hemispheres: aimed so far, and all
@@ -62,7 +67,8 @@ typedef struct {
 } Shot;
 
 // Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
-// An edge is (A, B, C) of eq. 1.2, of unit moment: its value is a length, positive inside.
+// An edge is (A, B, C) of eq. 1.2 as a moment: its value is the length by which the edge misses a
+// proxel's ray, over the distance of the edge's farther end; positive inside.
 // depth is (A", B", C") of app. A. columns and rows are first | last << 16, of proxels.
 typedef struct {
     float edge[4][3];

@@ -39,14 +39,14 @@ static real_v take_form_factors(const __global Shot* shot, __global float* facto
 #else
 
 // Proxels of LANES patches over those of the disks; the counts are spent.
-static real_v take_counts(__global int* proxel_count, float per_proxel, int patch,
+static real_v take_counts(__global int* proxel_count, float proxels_shot, int patch,
                           uint* proxels) {
     const int_v counts = load_v(patch, proxel_count);
     if (any_v(counts != 0)) {
         *int_vectors(proxel_count + patch) = (int_v)0;
         for (int lane = 0; lane < LANES; ++lane) *proxels += int_lane_of(counts, lane);
     }
-    return to_real_v(counts) * per_proxel;
+    return to_real_v(counts) / proxels_shot;
 }
 
 #endif
@@ -60,7 +60,7 @@ __kernel void update_radiosity(__global Shot* shot, const __global float* shot_f
                                __global BlockSummary* summaries, __global float* block_unshot) {
     if (shot->status != kRunning || shot->part < shot->part_count) return;
     const int pe = get_global_id(0), pe_count = get_global_size(0);
-    const float per_proxel = 1.0f / (disk_proxels * max(shot->part_count, 1u));
+    const float proxels_shot = disk_proxels * max(shot->part_count, 1u);
     for (int block = pe; block < stride / kReduceBlock; block += pe_count) {
         BlockSummary summary = {-1.0f, 0, 0u};
         real_v sums[BANDS][ACCUMULATORS];
@@ -72,7 +72,7 @@ __kernel void update_radiosity(__global Shot* shot, const __global float* shot_f
             const real_v form_factor = take_form_factors(shot, factors, stride, patch);
 #else
             const real_v form_factor =
-                take_counts(proxel_count, per_proxel, patch, &summary.proxels);
+                take_counts(proxel_count, proxels_shot, patch, &summary.proxels);
 #endif
             shoot_at(shot, shot_flux, stride, patch, form_factor, received, received_rest, unshot,
                      reflectance);

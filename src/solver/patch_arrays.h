@@ -8,16 +8,17 @@
 
 namespace hemirad {
 
-/// The mesh as the PEs hold it: structure of arrays, floats, normalised into [-1, 1] in double
-/// precision first. The scale is a power of two, so scaling a scene by one changes no bit.
+/// The mesh as the PEs hold it: structure of arrays, corners on a grid of whole steps that is laid
+/// in double precision. The scale is a power of two, so scaling a scene by one changes no bit.
 struct PatchArrays {
     std::uint32_t patch_count = 0;
-    std::uint32_t stride = 0;        ///< patches, padded to whole blocks of kReduceBlock
-    std::uint32_t corner_count = 4;  ///< 3 where the scene has triangles only
-    std::vector<float> corners;      ///< [corner][axis][stride]
-    std::vector<float> normals;      ///< [axis][stride], unit; 0 beyond the last patch
+    std::uint32_t stride = 0;           ///< patches, padded to whole blocks of kReduceBlock
+    std::uint32_t corner_count = 4;     ///< 3 where the scene has triangles only
+    std::vector<std::int32_t> corners;  ///< [corner][axis][stride], steps of kGridStep
+    std::vector<float> normals;         ///< [axis][stride], unit; 0 beyond the last patch
+    std::vector<std::int32_t> planes;   ///< [stride] Surface::plane; -1: no other patch's
     glm::dvec3 centre{};
-    double scale = 1;  ///< normalised = (world - centre) * scale
+    double scale = 1;  ///< normalised = (world - centre) * scale; steps = normalised / kGridStep
 };
 
 /// The power of two that brings a mesh's coordinates to about 1: no bit of a result changes where a

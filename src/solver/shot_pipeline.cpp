@@ -95,6 +95,14 @@ device::Shot first_shot() {
     return shot;
 }
 
+// Kernels index the patch database with signed 32-bit integers.
+void require_addressable(const PatchArrays& patches) {
+    const std::uint64_t coordinates = std::uint64_t{3} * patches.corner_count * patches.stride;
+    if (coordinates > std::numeric_limits<std::int32_t>::max())
+        throw InputError(std::to_string(patches.patch_count) +
+                         " patches are more than can be addressed: raise --patch-size");
+}
+
 }  // namespace
 
 std::vector<std::string> kernel_names(FormFactorMode mode) {
@@ -143,7 +151,7 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
                                                      static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
-    const std::uint64_t geometry = stride * 4 * (3 * corner_count + 4);
+    const std::uint64_t geometry = stride * 4 * (3 * corner_count + 5);
     const std::uint64_t radiosity = stride * 4 * (4 * bands + 1);
     const std::uint64_t projection = slots * (sizeof(device::Projection) + 4) + stacks * 4;
     const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * stacks);
@@ -169,11 +177,13 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       mode_(settings.form_factor),
       tolerance_(static_cast<float>(settings.tolerance)),
       samples_(samples_of(settings, stride_)) {
+    require_addressable(patches);
     require_countable(disk_proxels_, resolution_, samples_);
     build_kernels(device, settings, patches.corner_count);
     shot_ = acu_.plural(std::vector{first_shot()});
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
+    planes_ = acu_.plural(patches.planes);
     patch_samples_ = acu_.plural(samples_);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
     stack_ = acu_.plural<std::int32_t>(std::size_t{stack_count_} * depth_);
@@ -223,6 +233,12 @@ void ShotPipeline::load_near_pairs(const NearPairs& pairs) {
     near_factor_ = acu_.plural(pairs.form_factor);
 }
 
+void ShotPipeline::load(const PatchArrays& patches) {
+    acu_.load(corners_, std::span(patches.corners));
+    acu_.load(normals_, std::span(patches.normals));
+    acu_.load(planes_, std::span(patches.planes));
+}
+
 mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.at(name); }
 
 mp1map::Grid ShotPipeline::stack_grid() const { return {array_.array_count, array_.pe_count()}; }
@@ -237,7 +253,7 @@ void ShotPipeline::aim_hemisphere() {
 }
 
 void ShotPipeline::cull_patches() {
-    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, corners_, normals_,
+    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, corners_, normals_, planes_,
                std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
 }
 

@@ -71,6 +71,9 @@ class ShotPipeline {
     ShotPipeline(const PatchArrays& patches, const PatchLight& light,
                  const PipelineSettings& settings, const mp1map::Device& device);
 
+    /// Other patches, as many and of as many corners as before.
+    void load(const PatchArrays& patches);
+
     void init_plane();
     void aim_hemisphere();
     void cull_patches();
@@ -142,7 +145,8 @@ class ShotPipeline {
     std::vector<std::int32_t> samples_;  // [patch]
 
     mp1map::Plural<device::Shot> shot_;
-    mp1map::Plural<float> corners_, normals_, roots_;
+    mp1map::Plural<std::int32_t> corners_, planes_;
+    mp1map::Plural<float> normals_, roots_;
     mp1map::Plural<std::int32_t> patch_samples_;
     mp1map::Plural<std::int32_t> stack_, stack_height_;
     mp1map::Plural<device::Projection> projections_;

@@ -9,6 +9,8 @@ namespace {
 // The host looks at the device's progress about this often; shots in between need no round trip.
 constexpr double kSecondsBetweenLooks = 0.1;
 constexpr std::uint64_t kMostPassesBetweenLooks = 4096;
+// The device counts them in 32 bits.
+constexpr std::uint64_t kMostShots = std::numeric_limits<std::uint32_t>::max();
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -139,7 +141,8 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
     for (;;) {
         const device::Shot state = pipeline_.shot();
         if (state.status == kConverged || state.status == kExhausted) return Stop::converged;
-        if (state.shots >= settings_.max_shots) return Stop::max_shots;
+        if (state.shots >= std::min<std::uint64_t>(settings_.max_shots, kMostShots))
+            return Stop::max_shots;
         pipeline_.set_shot_limit(next_pause(state.shots));
 
         const double before = seconds_since(start);

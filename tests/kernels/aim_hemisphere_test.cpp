@@ -39,7 +39,7 @@ class AimHemisphere {
         shot = aimed(shot, samples);
         EXPECT_EQ(shot.part, static_cast<std::uint32_t>(part + 1));
         EXPECT_EQ(shot.part_count, static_cast<std::uint32_t>(samples * samples));
-        return {vector_of(shot.origin), vector_of(shot.u_axis), vector_of(shot.v_axis),
+        return {grid_point(shot.origin), vector_of(shot.u_axis), vector_of(shot.v_axis),
                 vector_of(shot.normal)};
     }
     device::Shot aimed(const device::Shot& shot, int samples) {
@@ -62,8 +62,7 @@ class AimHemisphere {
 };
 
 dvec3 corner(const PatchArrays& arrays, int patch, int k) {
-    const auto c = corner_of(arrays, patch, std::min<std::size_t>(k, arrays.corner_count - 1));
-    return {c.x, c.y, c.z};
+    return exact(corner_of(arrays, patch, std::min<std::size_t>(k, arrays.corner_count - 1)));
 }
 
 struct Part {
@@ -214,7 +213,7 @@ TEST(AimHemisphere, AHaltedShotKeepsItsFrame) {
 
     const auto shot = AimHemisphere(arrays).aimed(halted, 1);
 
-    EXPECT_EQ(shot.origin[0], 7.0f);
+    EXPECT_EQ(shot.origin[0], 7);
     EXPECT_EQ(shot.normal[2], 0.0f);
 }
 

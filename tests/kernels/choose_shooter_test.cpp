@@ -144,7 +144,7 @@ TEST_P(ChooseShooter, TheBooksOfTheShotAreClosed) {
     EXPECT_EQ(after.shot.part, 0u);
     for (std::size_t band = 0; band < 2; ++band) {
         // Two-sum is exact: sum and rest together are the sum in double precision.
-        const float flux = books.flux[band] * (40 * (1.0f / (kDiskProxels * kParts)));
+        const float flux = books.flux[band] * (40.0f / (kDiskProxels * kParts));
         EXPECT_EQ(double{after.escaped[band]} + after.escaped[2 + band],
                   double{books.escaped[band]} + flux);
     }
@@ -201,10 +201,12 @@ TEST_P(ChooseShooter, ItConvergesBelowTheToleranceAndNotAtIt) {
 
 TEST_P(ChooseShooter, WithoutEnergyNothingIsLeftToShoot) {
     auto books = random_books(3, 1);
-    for (auto& summary : books.summaries) summary.energy = 0;
     books.tolerance = 0;
+    for (const float energy : {0.0f, 1e-40f, std::numeric_limits<float>::min()}) {
+        for (auto& summary : books.summaries) summary.energy = energy;
 
-    EXPECT_EQ(closed(books).shot.status, kExhausted);
+        EXPECT_EQ(closed(books).shot.status, kExhausted) << energy;
+    }
 }
 
 TEST_P(ChooseShooter, AHaltedShotKeepsItsShooterAndItsBooks) {

@@ -6,14 +6,22 @@
 namespace hemirad::test {
 namespace {
 
-// Sec. 1.5.1: faces the shooter, and is not entirely behind it.
+bool is_before(float height, Scalar3 corner) {
+    const float sure = height - kGridMargin;
+    return sure > 0 && sure * sure > scalar_dot(corner, corner) * (kPlaneMargin * kPlaneMargin);
+}
+
+// Sec. 1.5.1: lies not in the shooter's plane, faces it, and is not entirely behind it.
 bool potentially_visible(const device::Shot& shot, const PatchArrays& arrays, std::size_t patch) {
-    const auto first = relative_to(shot, corner_of(arrays, patch, 0));
-    if (!(scalar_dot(normal_of(arrays, patch), first) < -kPlaneMargin)) return false;
-    for (std::size_t k = 0; k < arrays.corner_count; ++k)
-        if (scalar_dot(shot.normal, relative_to(shot, corner_of(arrays, patch, k))) > kPlaneMargin)
-            return true;
-    return false;
+    const int own = arrays.planes[shot.patch];
+    if (own >= 0 && arrays.planes[patch] == own) return false;
+    bool facing = false, in_front = false;
+    for (std::size_t k = 0; k < arrays.corner_count; ++k) {
+        const auto corner = relative_to(shot, corner_of(arrays, patch, k));
+        facing |= is_before(-scalar_dot(normal_of(arrays, patch), corner), corner);
+        in_front |= is_before(scalar_dot(shot.normal, corner), corner);
+    }
+    return facing && in_front;
 }
 
 using StackContents = std::vector<std::vector<std::int32_t>>;
@@ -37,8 +45,8 @@ StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
     auto stack = run.plural(std::vector<std::int32_t>(stacks.slots(), -1));
     auto heights = run.plural(std::vector<std::int32_t>(stacks.count(), -1));
     run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(arrays.corners),
-              run.plural(arrays.normals), std::int32_t(arrays.stride), std::int32_t(stacks.depth),
-              stack, heights);
+              run.plural(arrays.normals), run.plural(arrays.planes), std::int32_t(arrays.stride),
+              std::int32_t(stacks.depth), stack, heights);
 
     const auto slots = run.acu().unload(stack), height = run.acu().unload(heights);
     StackContents contents(stacks.count());
@@ -83,6 +91,22 @@ TEST_P(CullPatches, OnlyWhatFacesTheShooterFromInFrontOfItIsKept) {
     std::vector<std::int32_t> kept;
     for (const auto& stack : stacks) kept.insert(kept.end(), stack.begin(), stack.end());
     EXPECT_EQ(kept, (std::vector<std::int32_t>{1, 4, 6}));
+}
+
+TEST_P(CullPatches, PatchesOfTheShootersPlaneSeeNothingOfItThoughTheyTilt) {
+    const glm::dvec3 x(1, 0, 0), y(0, 1, 0), tilted(0, 0.999, 0.04);
+    auto arrays =
+        patch_arrays(mesh_of({square({0, 0, 0}, x, y, 1), square({2, 0, 0.1}, tilted, x, 1),
+                              square({-2, 0, 0.1}, tilted, x, 1)}));
+    arrays.planes = {7, 7, 8};
+    arrays.planes.resize(arrays.stride, -1);
+    auto shot = shot_from((glm::dvec3(0) - arrays.centre) * arrays.scale, {0, 0, 1});
+
+    const auto stacks = stacks_after(shot, arrays, GetParam());
+
+    std::vector<std::int32_t> kept;
+    for (const auto& stack : stacks) kept.insert(kept.end(), stack.begin(), stack.end());
+    EXPECT_EQ(kept, std::vector<std::int32_t>{2});
 }
 
 TEST_P(CullPatches, AHaltedShotLeavesTheStacksAlone) {

@@ -115,8 +115,11 @@ TEST_P(EllipseBounds, AreNeverTooSmallAndTightToOneProxel) {
     for (std::size_t i = 0; i < kArcs; ++i) {
         const auto expected = exact_bounds_of(arcs, i);
         // What kEdgeMargin may displace the arc by is no looseness but asked for.
+        const double reach =
+            std::max(glm::length(exact(arcs.from[i])), glm::length(exact(arcs.to[i]))) +
+            kGridMargin / kEdgeMargin;
         const int granted =
-            1 + static_cast<int>(0.5 * GetParam() * kEdgeMargin / expected.distance);
+            1 + static_cast<int>(0.5 * GetParam() * kEdgeMargin * reach / expected.distance);
         for (const auto& [range, interval] : {std::pair(bounds.ranges[i], expected.u),
                                               std::pair(bounds.ranges[kArcs + i], expected.v)}) {
             const auto beyond = excess(range, interval, GetParam());

@@ -15,7 +15,7 @@ using glm::dvec3;
 constexpr std::size_t kDirections = 16 * 16384;  // of each of four shooters: a million
 constexpr double kNear = 3e-6;  // four margins: what rounding might lose lies much closer
 
-using Triangle = std::array<Float3, 3>;
+using Triangle = std::array<Steps, 3>;
 
 // Neighbouring patches, and a direction near to what they share, of the shooter's frame.
 struct Case {
@@ -30,10 +30,14 @@ class World {
     explicit World(unsigned seed) : random_(seed), shot_(shot_from(0.5 * point(), point())) {}
 
     const device::Shot& shot() const { return shot_; }
+    /// A case about the shooter, from as large as the world to a ten-thousandth of it.
+    void rescale() { size_ = std::pow(10.0, between(-4, -0.3)); }
+    double size() const { return size_; }
+    dvec3 place() { return origin() + size_ * point(); }
     dvec3 point() { return {any(), any(), any()}; }
     double any() { return 2 * std::generate_canonical<double, 53>(random_) - 1; }
     double between(double low, double high) { return low + (high - low) * (0.5 + 0.5 * any()); }
-    dvec3 origin() const { return vector_of(shot_.origin); }
+    dvec3 origin() const { return grid_point(shot_.origin); }
 
     // As the kernels turn it, in double precision.
     Float3 direction_to(const dvec3& target) const {
@@ -43,33 +47,35 @@ class World {
                                             glm::dot(vector_of(shot_.normal), x))));
     }
     // Where the line p -> q passes to the left of x, seen from the origin: inside is positive.
-    double moment(const Float3& p, const Float3& q, const dvec3& x) const {
+    double moment(const Steps& p, const Steps& q, const dvec3& x) const {
         const auto a = exact(p) - origin(), b = exact(q) - origin();
         return glm::dot(glm::cross(b, a), x - origin()) / glm::length(b - a) /
                glm::length(x - origin());
     }
     bool above(const dvec3& x) const {
-        return glm::dot(vector_of(shot_.normal), x - origin()) > 1e-3;
+        return glm::dot(vector_of(shot_.normal), x - origin()) > 1e-3 * size_;
     }
 
   private:
     std::mt19937 random_;
     device::Shot shot_;
+    double size_ = 1;
 };
 
 bool well_inside(const World& world, const Triangle& patch, const dvec3& x, int but_edge) {
     for (int k = 0; k < 3; ++k)
-        if (k != but_edge && world.moment(patch[k], patch[(k + 1) % 3], x) < 1e-4) return false;
+        if (k != but_edge && world.moment(patch[k], patch[(k + 1) % 3], x) < 1e-4 * world.size())
+            return false;
     return true;
 }
 
 // Two triangles to the left and the right of an edge, which they list in reverse.
 std::optional<Case> shared_edge(World& world) {
-    const auto a = rounded(world.point()), b = rounded(world.point()), c = rounded(world.point()),
-               d = rounded(world.point());
+    const auto a = on_grid(world.place()), b = on_grid(world.place()), c = on_grid(world.place()),
+               d = on_grid(world.place());
     const auto along = exact(b) - exact(a);
-    if (glm::length(along) < 0.05) return {};
-    const auto x = exact(a) + world.between(0, 1) * along + kNear * world.point();
+    if (glm::length(along) < 0.05 * world.size()) return {};
+    const auto x = exact(a) + world.between(0, 1) * along + kNear * world.size() * world.point();
     const Triangle left = {a, b, c}, right = {b, a, d};
     if (!world.above(x) || !well_inside(world, left, x, 0) || !well_inside(world, right, x, 0))
         return {};
@@ -78,12 +84,12 @@ std::optional<Case> shared_edge(World& world) {
 
 // An edge on one side, on the other two that meet at a vertex rounded off it.
 std::optional<Case> t_junction(World& world) {
-    const auto a = rounded(world.point()), b = rounded(world.point()), c = rounded(world.point()),
-               d = rounded(world.point());
+    const auto a = on_grid(world.place()), b = on_grid(world.place()), c = on_grid(world.place()),
+               d = on_grid(world.place());
     const auto along = exact(b) - exact(a);
-    if (glm::length(along) < 0.05) return {};
-    const auto vertex = rounded(exact(a) + world.between(0.2, 0.8) * along);
-    const auto x = exact(vertex) + kNear * world.point();
+    if (glm::length(along) < 0.05 * world.size()) return {};
+    const auto vertex = on_grid(exact(a) + world.between(0.2, 0.8) * along);
+    const auto x = exact(vertex) + kNear * world.size() * world.point();
     const Triangle left = {a, b, c}, right = {b, a, d};
     if (!world.above(x) || !well_inside(world, left, x, 0) || !well_inside(world, right, x, 0))
         return {};
@@ -92,21 +98,21 @@ std::optional<Case> t_junction(World& world) {
 
 // Five triangles all around a vertex.
 std::optional<Case> shared_vertex(World& world) {
-    const auto centre = rounded(world.point());
+    const auto centre = on_grid(world.place());
     const auto towards = exact(centre) - world.origin();
-    if (glm::length(towards) < 0.1 || !world.above(exact(centre))) return {};
+    if (glm::length(towards) < 0.1 * world.size() || !world.above(exact(centre))) return {};
     const auto forward = glm::normalize(towards);
     const auto side = glm::normalize(glm::cross(forward, world.point()));
     const auto up = glm::cross(side, forward);
-    std::vector<Float3> rim;
+    std::vector<Steps> rim;
     for (int k = 0; k < 5; ++k) {
         const double angle = -2 * std::numbers::pi / 5 * (k + 0.3 * world.any());
         const double radius = world.between(0.02, 0.5) * glm::length(towards);
         rim.push_back(
-            rounded(exact(centre) + radius * (std::cos(angle) * side + std::sin(angle) * up +
+            on_grid(exact(centre) + radius * (std::cos(angle) * side + std::sin(angle) * up +
                                               0.3 * world.any() * forward)));
     }
-    Case result{{}, world.direction_to(exact(centre) + kNear * world.point())};
+    Case result{{}, world.direction_to(exact(centre) + kNear * world.size() * world.point())};
     for (int k = 0; k < 5; ++k) result.patches.push_back({centre, rim[k], rim[(k + 1) % 5]});
     // Clockwise or not, as seen from here: all triangles have the third corner inside.
     for (auto& patch : result.patches)
@@ -116,8 +122,10 @@ std::optional<Case> shared_vertex(World& world) {
 
 std::vector<Case> cases_of(std::optional<Case> (*make)(World&), World& world) {
     std::vector<Case> cases;
-    while (cases.size() < kDirections)
+    while (cases.size() < kDirections) {
+        world.rescale();
         if (auto one = make(world)) cases.push_back(*std::move(one));
+    }
     return cases;
 }
 
@@ -129,7 +137,7 @@ std::vector<int> claim_counts(const World& world, const std::vector<Case>& cases
     for (const auto& one : cases) directions.push_back(one.direction);
     std::vector<int> counts(cases.size());
     for (std::size_t patch = 0; patch < cases.front().patches.size(); ++patch) {
-        std::vector<float> corners;
+        std::vector<std::int32_t> corners;
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t axis = 0; axis < 3; ++axis)
                 for (const auto& one : cases) corners.push_back(one.patches[patch][k][axis]);
@@ -183,7 +191,10 @@ TEST_P(Hemisphere, FartherThanTwoMarginsFromAnEdgeOnlyOneSideClaims) {
         const auto target = world.origin() + x.x * vector_of(world.shot().u_axis) +
                             x.y * vector_of(world.shot().v_axis) +
                             x.z * vector_of(world.shot().normal);
-        const bool is_far = std::abs(world.moment(edge[0], edge[1], target)) > 2 * kEdgeMargin;
+        const double reach = std::max(glm::distance(exact(edge[0]), world.origin()),
+                                      glm::distance(exact(edge[1]), world.origin()));
+        const bool is_far = std::abs(world.moment(edge[0], edge[1], target)) >
+                            2 * (kEdgeMargin * reach + kGridMargin);
         far += is_far;
         both += is_far && counts[i] > 1;
     }
@@ -209,7 +220,8 @@ TEST_P(Hemisphere, AReversedEdgeIsTheNegatedPlaneToHalfOfWhatTheTwoMarginsCover)
     for (std::size_t i = 0; i < 4096; ++i) {
         const dvec3 sum(one[i] + other[i], one[4096 + i] + other[4096 + i],
                         one[8192 + i] + other[8192 + i]);
-        ASSERT_LT(glm::length(sum), kEdgeMargin);
+        const double reach = std::max(glm::length(exact(from[i])), glm::length(exact(to[i])));
+        ASSERT_LT(glm::length(sum), kEdgeMargin * reach);
     }
 }
 

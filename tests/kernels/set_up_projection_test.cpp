@@ -11,13 +11,18 @@ constexpr std::uint32_t kResolution = 64;
 
 using Plane = std::array<float, 3>;
 
-// The moment of the line p -> q per unit length, about the hemisphere's centre.
+// The moment of the line p -> q per unit length, about the hemisphere's centre, over the distance
+// of its farther end and what the grid adds.
 Plane edge_plane(Scalar3 p, Scalar3 q) {
     const auto d = scalar_difference(q, p);
     const float squared = scalar_dot(d, d);
-    const float scale = squared > 0 ? 1.0f / std::sqrt(squared) : 0.0f;
+    if (squared == 0) return {0, 0, 1};  // all that is above the horizon is inside
+    const float scale = 1.0f / std::sqrt(squared);
     const auto moment = scalar_cross(d, p);
-    return {scale * moment.x, scale * moment.y, scale * moment.z};
+    const float reach =
+        std::sqrt(std::max(scalar_dot(p, p), scalar_dot(q, q))) + kGridMargin / kEdgeMargin;
+    const float over = 1.0f / reach;
+    return {over * (scale * moment.x), over * (scale * moment.y), over * (scale * moment.z)};
 }
 
 std::vector<Plane> expected_edges(const device::Shot& shot, const PatchArrays& arrays,
@@ -35,7 +40,12 @@ std::vector<Plane> expected_edges(const device::Shot& shot, const PatchArrays& a
 // -1/rho of app. A: the patch's normal in the shooter's frame over its plane's distance.
 Plane expected_depth(const device::Shot& shot, const PatchArrays& arrays, std::size_t patch) {
     const auto normal = normal_of(arrays, patch);
-    const float scale = -1.0f / scalar_dot(normal, relative_to(shot, corner_of(arrays, patch, 0)));
+    auto nearest = relative_to(shot, corner_of(arrays, patch, 0));
+    for (std::size_t k = 1; k < arrays.corner_count; ++k) {
+        const auto corner = relative_to(shot, corner_of(arrays, patch, k));
+        if (scalar_dot(corner, corner) < scalar_dot(nearest, nearest)) nearest = corner;
+    }
+    const float scale = 1.0f / std::max(-scalar_dot(normal, nearest), kGridMargin);
     const auto turned = rotated_into(shot, normal);
     return {scale * turned.x, scale * turned.y, scale * turned.z};
 }
@@ -129,7 +139,7 @@ TEST_P(SetUpProjection, ARepeatedCornerGivesAnEdgeThatEveryDirectionIsInsideOf) 
     for (const auto& projection : projections) {
         if (projection.patch % 3 != 0) continue;
         ++triangles;
-        EXPECT_EQ(std::to_array(projection.edge[2]), Plane{});
+        EXPECT_EQ(std::to_array(projection.edge[2]), (Plane{0, 0, 1}));
     }
     EXPECT_GT(triangles, 10);
 }

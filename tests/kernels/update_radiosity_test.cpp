@@ -52,8 +52,8 @@ State random_state(std::size_t bands) {
 // the reflected part to what is unshot, of which the shooter has none left.
 void add_flux(State& state, std::size_t band, std::size_t patch) {
     const std::size_t at = band * kStride + patch;
-    const float flux = static_cast<float>(state.counts[patch]) *
-                       (1.0f / static_cast<float>(state.disk_proxels * state.part_count)) *
+    const float flux = static_cast<float>(state.counts[patch]) /
+                       static_cast<float>(state.disk_proxels * state.part_count) *
                        state.shot_flux[band];
     const float increment = flux + state.rest[at];
     const float total = state.received[at] + increment;

@@ -12,11 +12,11 @@ static void store_bounds(Bounds bounds, int count, int at, __global float* to,
     *real_vectors(to + 3 * count + at) = bounds.v_most;
     *real_vectors(to + 4 * count + at) = bounds.distance;
     for (int lane = 0; lane < LANES; ++lane) {
-        const float distance = lane_of(bounds.distance, lane);
-        ranges[at + lane] = proxel_range(lane_of(bounds.u_least, lane),
-                                         lane_of(bounds.u_most, lane), distance);
-        ranges[count + at + lane] = proxel_range(lane_of(bounds.v_least, lane),
-                                                 lane_of(bounds.v_most, lane), distance);
+        const float play = play_of(lane_of(bounds.distance, lane), lane_of(bounds.reach, lane));
+        ranges[at + lane] =
+            proxel_range(lane_of(bounds.u_least, lane), lane_of(bounds.u_most, lane), play);
+        ranges[count + at + lane] =
+            proxel_range(lane_of(bounds.v_least, lane), lane_of(bounds.v_most, lane), play);
     }
 }
 
@@ -25,6 +25,7 @@ __kernel void bound_arcs(const __global float* from, const __global float* to, i
     const int at = get_global_id(0) * LANES;
     const Point a = consecutive_points(from, count, at), b = consecutive_points(to, count, at);
     Bounds bounds = no_bounds();
+    bounds.reach = edge_reach(a, b);
     include_arc(&bounds, a, b, edge_plane(a, b), (int_v)-1);
     store_bounds(bounds, count, at, result, ranges);
 }

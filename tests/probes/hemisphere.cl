@@ -16,18 +16,19 @@ __kernel void edge_planes(const __global float* from, const __global float* to, 
 }
 
 // -1 where a direction of the shooter's frame lies inside every edge of its patch, with the margin
-// and in the order of project_patches. corners: [corner][axis][count], of the world.
-__kernel void claims(const __global Shot* shot, const __global float* corners,
+// and in the order of project_patches. corners: [corner][axis][count], grid steps.
+__kernel void claims(const __global Shot* shot, const __global int* corners,
                      const __global float* directions, int count, __global int* claimed) {
     const int at = get_global_id(0) * LANES;
     const Point x = consecutive_points(directions, count, at);
     Point corner[CORNERS];
     for (int k = 0; k < CORNERS; ++k)
         corner[k] = rotated_into(
-            shot, relative_to(shot, consecutive_points(corners + 3 * k * count, count, at)));
+            shot, relative_to(shot, consecutive_corners(corners + 3 * k * count, count, at)));
     int_v outside = 0;
     for (int k = 0; k < CORNERS; ++k) {
-        const Point plane = edge_plane(corner[k], corner[(k + 1) % CORNERS]);
+        const Point p = corner[k], q = corner[(k + 1) % CORNERS];
+        const Point plane = scaled_v(1.0f / edge_reach(p, q), edge_plane(p, q));
         const real_v along_u = fma(plane.x, x.x, (real_v)kEdgeMargin);
         outside |= as_int_v(fma(plane.z, x.z, fma(plane.y, x.y, along_u)));
     }

@@ -61,19 +61,22 @@ TEST(SameBits, WhateverThePowerOfTwoTheSceneIsScaledBy) {
     }
 }
 
-// Half of the extent is a rounding error above a power of two.
-TEST(SameBits, OfNormalisedCoordinatesWhateverThePowerOfTwo) {
-    const double edge = 2 * std::nextafter(1.0, 2.0);
-    Mesh mesh =
-        mesh_of(std::vector<Polygon>{{{glm::dvec3(0), {edge, 0, 0}, {edge, 1, 0}, {0, 1, 0}}}});
-    const auto arrays = patch_arrays(mesh);
-    for (auto& vertex : mesh.vertices) vertex *= 1024.0;
+// Half of the extent is about a power of two: differences of coordinates must not reach 2^31.
+TEST(SameBits, OfGridCoordinatesWhateverThePowerOfTwo) {
+    for (const double edge :
+         {std::nextafter(2.0, 1.0), 2 - 0x1p-31, 2.0, std::nextafter(2.0, 3.0)}) {
+        Mesh mesh =
+            mesh_of(std::vector<Polygon>{{{glm::dvec3(0), {edge, 0, 0}, {edge, 1, 0}, {0, 1, 0}}}});
+        const auto arrays = patch_arrays(mesh);
+        for (auto& vertex : mesh.vertices) vertex *= 1024.0;
 
-    const auto scaled_arrays = patch_arrays(mesh);
+        const auto scaled_arrays = patch_arrays(mesh);
 
-    EXPECT_EQ(scaled_arrays.corners, arrays.corners);
-    EXPECT_EQ(scaled_arrays.scale * 1024, arrays.scale);
-    EXPECT_LE(*std::max_element(arrays.corners.begin(), arrays.corners.end()), 1.0f);
+        EXPECT_EQ(scaled_arrays.corners, arrays.corners);
+        EXPECT_EQ(scaled_arrays.scale * 1024, arrays.scale);
+        EXPECT_LT(*std::ranges::max_element(arrays.corners), 1 << 30) << edge;
+        EXPECT_GE(*std::ranges::max_element(arrays.corners), (1 << 29) - 1) << edge;
+    }
 }
 
 }  // namespace

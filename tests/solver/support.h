@@ -155,7 +155,7 @@ class Shooters {
         pipeline_.aim_hemisphere();
         const auto shot = pipeline_.shot();
         const auto vector = [](const float* v) { return glm::dvec3(v[0], v[1], v[2]); };
-        return {vector(shot.origin), vector(shot.normal), vector(shot.u_axis)};
+        return {grid_point(shot.origin), vector(shot.normal), vector(shot.u_axis)};
     }
 
     /// F_ij as the device counts it.

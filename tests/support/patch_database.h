@@ -45,6 +45,19 @@ inline PatchArrays random_patches(int count, int corners, unsigned seed) {
     return patch_arrays(mesh_of(polygons));
 }
 
+/// A point of the normalised scene as whole steps of the device's grid.
+using Steps = std::array<std::int32_t, 3>;
+
+inline Steps on_grid(const glm::dvec3& point) {
+    Steps steps{};
+    for (int axis = 0; axis < 3; ++axis)
+        steps[axis] = static_cast<std::int32_t>(std::lround(point[axis] / kGridStep));
+    return steps;
+}
+inline glm::dvec3 exact(const Steps& steps) {
+    return double{kGridStep} * glm::dvec3(steps[0], steps[1], steps[2]);
+}
+
 /// A running shot of patch 0 from a hemisphere at `origin` that looks along `normal`.
 inline device::Shot shot_from(glm::dvec3 origin, glm::dvec3 normal) {
     const auto n = glm::normalize(normal);
@@ -53,7 +66,7 @@ inline device::Shot shot_from(glm::dvec3 origin, glm::dvec3 normal) {
     const auto v = glm::cross(n, u);
     device::Shot shot{};
     for (int axis = 0; axis < 3; ++axis) {
-        shot.origin[axis] = static_cast<float>(origin[axis]);
+        shot.origin[axis] = on_grid(origin)[axis];
         shot.u_axis[axis] = static_cast<float>(u[axis]);
         shot.v_axis[axis] = static_cast<float>(v[axis]);
         shot.normal[axis] = static_cast<float>(n[axis]);
@@ -91,16 +104,19 @@ inline Scalar3 scalar_cross(Scalar3 a, Scalar3 b) {
     return {std::fma(a.y, b.z, -(a.z * b.y)), std::fma(a.z, b.x, -(a.x * b.z)),
             std::fma(a.x, b.y, -(a.y * b.x))};
 }
-inline Scalar3 corner_of(const PatchArrays& arrays, std::size_t patch, std::size_t k) {
-    const float* const at = arrays.corners.data() + 3 * k * arrays.stride + patch;
+inline Steps corner_of(const PatchArrays& arrays, std::size_t patch, std::size_t k) {
+    const std::int32_t* const at = arrays.corners.data() + 3 * k * arrays.stride + patch;
     return {at[0], at[arrays.stride], at[2 * arrays.stride]};
 }
 inline Scalar3 normal_of(const PatchArrays& arrays, std::size_t patch) {
     const float* const at = arrays.normals.data() + patch;
     return {at[0], at[arrays.stride], at[2 * arrays.stride]};
 }
-inline Scalar3 relative_to(const device::Shot& shot, Scalar3 a) {
-    return scalar_difference(a, {shot.origin[0], shot.origin[1], shot.origin[2]});
+inline Scalar3 relative_to(const device::Shot& shot, const Steps& a) {
+    const auto along = [&](int axis) {
+        return static_cast<float>(a[axis] - shot.origin[axis]) * kGridStep;
+    };
+    return {along(0), along(1), along(2)};
 }
 inline Scalar3 rotated_into(const device::Shot& shot, Scalar3 a) {
     return {scalar_dot(shot.u_axis, a), scalar_dot(shot.v_axis, a), scalar_dot(shot.normal, a)};

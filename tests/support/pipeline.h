@@ -39,6 +39,11 @@ inline const std::vector<Shape>& shapes() {
     return all;
 }
 
+/// Where steps of the device's grid lie in the normalised scene.
+inline glm::dvec3 grid_point(const std::int32_t* steps) {
+    return double{kGridStep} * glm::dvec3(steps[0], steps[1], steps[2]);
+}
+
 /// A pipeline whose next shooter is `patch`, aimed and ready to be projected.
 class Aimed {
   public:
@@ -69,7 +74,7 @@ class Aimed {
     reference::Shooter shooter() {
         const auto shot = pipeline_.shot();
         const auto vector = [](const float* v) { return glm::dvec3(v[0], v[1], v[2]); };
-        return {vector(shot.origin), vector(shot.normal), vector(shot.u_axis)};
+        return {grid_point(shot.origin), vector(shot.normal), vector(shot.u_axis)};
     }
     /// In the reference's numbering: kEscaped for no patch, kOutsideDisk beyond the disk.
     std::vector<int> owners() {
