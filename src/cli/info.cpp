@@ -39,7 +39,12 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh, dou
         << "surfaces     " << mesh.surfaces.size() << '\n'
         << "patches      " << mesh.patches.size() << " (" << triangles << " of them triangles), "
         << "--patch-size " << number_text(patch_size) << '\n'
-        << "precision    " << mesh.weld << " m, closer vertices are one (--weld)\n";
+        << "precision    " << mesh.weld
+        << " m, closer vertices are one (--weld): " << mesh.input.welded << " welded, "
+        << mesh.input.moved << " moved onto edges\n"
+        << "faults       " << counted(mesh.input.split, "face") << " split, "
+        << counted(mesh.input.overlapping, "overlap") << ", "
+        << counted(mesh.input.inside_out, "room") << " inside out\n";
 }
 
 std::string object_names(const Mesh& mesh, const Part& part) {

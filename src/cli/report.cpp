@@ -19,12 +19,21 @@ std::uint64_t peak_memory_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
+Json input_json(const InputFaults& input) {
+    return {{"welded", input.welded},           {"moved", input.moved},
+            {"degenerate", input.degenerate},   {"crossing", input.crossing},
+            {"duplicate", input.duplicate},     {"split", input.split},
+            {"overlapping", input.overlapping}, {"inside_out", input.inside_out}};
+}
+
 Json scene_json(const Mesh& mesh) {
     // A patch is its own only element until elements exist.
     return {{"patches", mesh.patches.size()},
             {"elements", mesh.patches.size()},
             {"bands", mesh.bands},
-            {"closed", mesh.closed}};
+            {"closed", mesh.closed},
+            {"weld", mesh.weld},
+            {"input", input_json(mesh.input)}};
 }
 
 Json device_json(const Outcome& outcome) {

@@ -7,6 +7,8 @@
 #include "errors.h"
 #include "scene/cut_surface.h"
 #include "scene/edges.h"
+#include "scene/face_warnings.h"
+#include "scene/find_overlaps.h"
 #include "scene/find_parts.h"
 #include "scene/flat_faces.h"
 #include "scene/group_flats.h"
@@ -48,6 +50,8 @@ class Mesher {
         combine_fragments();
         keep_used_vertices();
         number_planes(precision_, mesh_);
+        look_for_overlaps();
+        look_for_inside_out();
         mesh_.parts = std::move(parts_.parts);
         mesh_.closed = parts_.encloses_all;
         return std::move(mesh_);
@@ -77,13 +81,19 @@ class Mesher {
     void flatten_faces() {
         std::vector<std::uint32_t> vertex_of_position;
         vertex_of_position.reserve(scene_.positions.size());
-        for (const auto& position : scene_.positions)
+        for (const auto& position : scene_.positions) {
             vertex_of_position.push_back(vertices_.add(position));
+            if (vertices_[vertex_of_position.back()] != position) ++mesh_.input.welded;
+        }
         const Outlines outlines = outline_faces(scene_.faces, vertex_of_position);
-        mesh_.moved_vertices = move_onto_edges(outlines, precision_, vertices_);
+        mesh_.input.moved = move_onto_edges(outlines, precision_, vertices_);
         faces_ = flatten(scene_, outlines, vertices_.positions(), precision_);
         if (faces_.flats.empty()) throw InputError(scene_.file + ": no face has an area");
-        mesh_.dropped_degenerate = faces_.degenerate_count;
+        mesh_.input.degenerate = faces_.degenerate_count;
+        mesh_.input.crossing = faces_.crossing_count;
+        mesh_.input.duplicate = faces_.duplicate_count;
+        mesh_.input.split = faces_.split_count;
+        mesh_.dropped_degenerate = faces_.degenerate_count + faces_.crossing_count;
         mesh_.dropped_duplicate = faces_.duplicate_count;
         mesh_.warnings.insert(mesh_.warnings.end(), faces_.warnings.begin(), faces_.warnings.end());
     }
@@ -146,6 +156,24 @@ class Mesher {
         const Surface& surface = mesh_.surfaces[index];
         const auto first = mesh_.patches.begin() + surface.first_patch;
         return {surface, {first, first + surface.patch_count}, {}};
+    }
+
+    void look_for_overlaps() {
+        const Overlaps overlaps = find_overlaps(mesh_, precision_);
+        mesh_.input.overlapping = static_cast<std::uint32_t>(overlaps.pairs.size());
+        for (auto& warning : warnings_of(overlaps, scene_.file, mesh_))
+            mesh_.warnings.push_back(std::move(warning));
+    }
+
+    void look_for_inside_out() {
+        if (!parts_.inside_out) return;
+        mesh_.input.inside_out = 1;
+        const auto& [part, at] = *parts_.inside_out;
+        const auto object = parts_.parts[part].objects.front();
+        mesh_.warnings.push_back(scene_.file + ": \"" + mesh_.objects[object] +
+                                 "\" encloses everything else, which sees the backs of its faces, "
+                                 "such as at " +
+                                 place_text(at) + ": a room's faces have to be turned over");
     }
 
     void combine_fragments() {

@@ -14,15 +14,20 @@ std::string name_of(const Scene& scene, const Face& face) {
 
 }  // namespace
 
+std::string place_text(const glm::dvec3& at) {
+    std::ostringstream text;
+    text.precision(9);
+    text << '(' << at.x << ", " << at.y << ", " << at.z << ')';
+    return text.str();
+}
+
 void FaceWarnings::add(std::uint32_t face) {
     if (++count_ > kInFull) return;
     const Face& faulty = scene_.faces[face];
     std::ostringstream line;
     line << scene_.file << ": face " << face << " of " << name_of(scene_, faulty);
-    if (!faulty.vertices.empty()) {
-        const auto& at = scene_.positions[faulty.vertices.front()];
-        line << " at (" << at.x << ", " << at.y << ", " << at.z << ')';
-    }
+    if (!faulty.vertices.empty())
+        line << " at " << place_text(scene_.positions[faulty.vertices.front()]);
     line << ' ' << what_;
     lines_.push_back(line.str());
 }

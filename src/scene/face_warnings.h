@@ -8,6 +8,9 @@
 
 namespace hemirad::meshing {
 
+/// (1, 2, 3), to nine digits: enough also far from the origin.
+std::string place_text(const glm::dvec3& at);
+
 /// Warnings of one kind about faces: the first few in full, the rest as a count.
 class FaceWarnings {
   public:

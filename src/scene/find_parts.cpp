@@ -1,10 +1,12 @@
 #include "scene/find_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "scene/disjoint_sets.h"
 
@@ -148,6 +150,51 @@ bool encloses_all(const Parts& parts, const std::vector<Extent>& extents) {
            });
 }
 
+// Of a triangle seen from a point, over 4 pi (Van Oosterom and Strackee 1983).
+double part_of_sphere(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    const double volume = glm::dot(a, glm::cross(b, c));
+    const double rest =
+        la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+    return std::atan2(volume, rest) / (2 * std::numbers::pi);
+}
+
+// How often a part goes round a point: 1 inside a solid, 0 outside.
+double turns_round(const FlatFaces& faces, const Parts& parts, std::uint32_t part,
+                   const Vertices& vertices, const glm::dvec3& eye) {
+    double turns = 0;
+    for (std::uint32_t f = 0; f < faces.flats.size(); ++f) {
+        if (parts.part_of_flat[f] != part) continue;
+        const auto outline = faces.outline(faces.flats[f]);
+        for (std::size_t i = 1; i + 1 < outline.size(); ++i)
+            turns += part_of_sphere(vertices[outline[0]] - eye, vertices[outline[i]] - eye,
+                                    vertices[outline[i + 1]] - eye);
+    }
+    return turns;
+}
+
+// The others are asked by the middle of their boxes: one that lies on the part itself is gone half
+// round. Of many a few are asked.
+std::optional<InsideOut> find_inside_out(const FlatFaces& faces, const Parts& parts,
+                                         const std::vector<Extent>& extents,
+                                         const Vertices& vertices) {
+    constexpr std::size_t kMostAsked = 16;
+    if (parts.parts.size() < 2) return {};
+    const auto largest = std::ranges::max_element(extents, {}, &Extent::volume);
+    const auto part = static_cast<std::uint32_t>(largest - extents.begin());
+    if (!parts.parts[part].closed || !(largest->volume > 0)) return {};
+    for (const Extent& other : extents)
+        if (!lies_in(other, *largest)) return {};
+    for (std::size_t p = 0, asked = 0; p < extents.size() && asked < kMostAsked; ++p) {
+        if (p == part) continue;
+        const glm::dvec3 middle = 0.5 * extents[p].low + 0.5 * extents[p].high;
+        if (turns_round(faces, parts, part, vertices, middle) < 0.25) return {};
+        ++asked;
+    }
+    const auto first = std::ranges::find(parts.part_of_flat, part) - parts.part_of_flat.begin();
+    return InsideOut{part, vertices[faces.outline(faces.flats[std::size_t(first)])[0]]};
+}
+
 void list_parts(const Scene& scene, const FlatFaces& faces, DisjointSets& sets, Parts& parts) {
     constexpr std::uint32_t kUnseen = 0xffffffffu;
     std::vector<std::uint32_t> part_of_root(faces.flats.size(), kUnseen);
@@ -183,7 +230,9 @@ Parts find_parts(const Scene& scene, const FlatFaces& faces, std::span<const Edg
     Parts parts;
     list_parts(scene, faces, sets, parts);
     for (const Edge& edge : open) parts.parts[parts.part_of_flat[edge.owner]].closed = false;
-    parts.encloses_all = encloses_all(parts, measure(faces, parts, vertices));
+    const auto extents = measure(faces, parts, vertices);
+    parts.encloses_all = encloses_all(parts, extents);
+    parts.inside_out = find_inside_out(faces, parts, extents, vertices);
     return parts;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,17 @@
 
 namespace hemirad::meshing {
 
+struct InsideOut {
+    std::uint32_t part;
+    glm::dvec3 at;  ///< a corner of it
+};
+
 struct Parts {
     std::vector<Part> parts;
     std::vector<std::uint32_t> part_of_flat;
     bool encloses_all = false;  ///< every part is closed and seen from inside one
+    /// A closed part with its fronts outwards that encloses all others.
+    std::optional<InsideOut> inside_out = {};
 };
 
 /// Connected components over shared edges. A part is closed where every edge is passed as often one

@@ -88,7 +88,9 @@ class Flattener {
         for (std::uint32_t face = 0; face < outlines_.face_count(); ++face) flatten(face);
         for (const auto* kind : {&no_area_, &crossing_, &repeated_, &warped_})
             kind->append_to(result_.warnings);
-        result_.degenerate_count = no_area_.count() + crossing_.count();
+        result_.degenerate_count = no_area_.count();
+        result_.crossing_count = crossing_.count();
+        result_.split_count = warped_.count();
         result_.duplicate_count = repeated_.count();
         return std::move(result_);
     }

@@ -25,7 +25,7 @@ struct FlatFaces {
     std::vector<Flat> flats;  ///< in the order of their faces
     std::vector<std::uint32_t> corners;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of concave outlines
-    std::uint32_t degenerate_count = 0, duplicate_count = 0;
+    std::uint32_t degenerate_count = 0, crossing_count = 0, duplicate_count = 0, split_count = 0;
     std::vector<std::string> warnings;
 
     std::span<const std::uint32_t> outline(const Flat& flat) const {

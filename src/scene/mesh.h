@@ -59,6 +59,18 @@ struct Part {
     std::uint32_t back_patches = 0;  ///< backs that --backfaces gave it
 };
 
+/// What was found in the input, and what became of it.
+struct InputFaults {
+    std::uint32_t welded = 0;       ///< positions drawn to another within Mesh::weld
+    std::uint32_t moved = 0;        ///< vertices moved onto an edge within twice that
+    std::uint32_t degenerate = 0;   ///< faces without area: dropped
+    std::uint32_t crossing = 0;     ///< faces that cross themselves: dropped
+    std::uint32_t duplicate = 0;    ///< faces that repeat another: dropped
+    std::uint32_t split = 0;        ///< faces that are not planar: in triangles
+    std::uint32_t overlapping = 0;  ///< pairs of surfaces of which each covers the other: kept
+    std::uint32_t inside_out = 0;   ///< rooms whose fronts look outwards: kept
+};
+
 struct Mesh {
     std::vector<glm::dvec3> vertices;  ///< world space, m; corners shared by neighbours are one
     std::vector<Patch> patches;
@@ -70,9 +82,9 @@ struct Mesh {
     std::vector<std::string> objects;
     std::uint32_t face_count = 0;  ///< of the scene, dropped ones included
     std::uint32_t dropped_degenerate = 0, dropped_duplicate = 0;
-    std::uint32_t moved_vertices = 0;  ///< onto edges that they lay beside by less than 2 weld
-    double weld = 0;                   ///< m; vertices closer than this are one
-    bool closed = false;               ///< every part is closed: no proxel can escape
+    InputFaults input;
+    double weld = 0;      ///< m; vertices closer than this are one
+    bool closed = false;  ///< every part is closed: no proxel can escape
     std::vector<std::string> warnings;
 
     double area(const Patch& patch) const;          ///< m^2

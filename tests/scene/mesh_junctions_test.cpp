@@ -71,8 +71,8 @@ TEST(Junctions, RoundedToFloatsAreMovedOntoTheirEdges) {
         const Mesh mesh = mesh_of(turn.floats_of(pinwheel_room()), kUncut);
 
         EXPECT_TRUE(mesh.closed) << seed;
-        EXPECT_GT(mesh.moved_vertices, 0u);
-        EXPECT_LE(mesh.moved_vertices, kPinwheelJunctions.size());
+        EXPECT_GT(mesh.input.moved, 0u);
+        EXPECT_LE(mesh.input.moved, kPinwheelJunctions.size());
         for (const auto& [at, from, to] : kPinwheelJunctions)
             EXPECT_LT(
                 distance_to_line(nearest_vertex(mesh, turn(at)), nearest_vertex(mesh, turn(from)),
@@ -83,7 +83,7 @@ TEST(Junctions, RoundedToFloatsAreMovedOntoTheirEdges) {
 }
 
 TEST(Junctions, ThatAreExactStayBitForBit) {
-    EXPECT_EQ(mesh_of(pinwheel_room(), 0.3).moved_vertices, 0u);
+    EXPECT_EQ(mesh_of(pinwheel_room(), 0.3).input.moved, 0u);
 }
 
 TEST(Junctions, LeaveVerticesBeyondThePrecisionWhereTheyAre) {
@@ -92,7 +92,7 @@ TEST(Junctions, LeaveVerticesBeyondThePrecisionWhereTheyAre) {
         const Faces faces{rectangle(0, 0, 2, 1),
                           {{0, 1, 0}, {1, 1 + beside, 0}, {1, 2, 0}, {0, 2, 0}}};
 
-        EXPECT_EQ(mesh_of(faces, kUncut).moved_vertices, crack < 1 ? 1u : 0u);
+        EXPECT_EQ(mesh_of(faces, kUncut).input.moved, crack < 1 ? 1u : 0u);
     }
 }
 
@@ -100,7 +100,7 @@ TEST(Junctions, DoNotDrawVerticesOfClosedSolidsOntoASheetsEdge) {
     Faces faces = solid_box({0.5, 1e-7, 0}, {0.7, 1, 1});
     faces.push_back({{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {0, -1, 0}});
 
-    EXPECT_EQ(mesh_of(faces, kUncut).moved_vertices, 0u);
+    EXPECT_EQ(mesh_of(faces, kUncut).input.moved, 0u);
 }
 
 TEST(Junctions, DoNotCollapseNeedles) {
@@ -112,7 +112,7 @@ TEST(Junctions, DoNotCollapseNeedles) {
     const Mesh mesh = mesh_of(faces, kUncut);
 
     for (const Patch& patch : mesh.patches) EXPECT_EQ(std::abs(mesh.normal(patch).z), 1);
-    EXPECT_EQ(mesh.moved_vertices, 0u);
+    EXPECT_EQ(mesh.input.moved, 0u);
 }
 
 TEST(Junctions, OfHundredsOfThousandsOfLooseTrianglesTakeSeconds) {
