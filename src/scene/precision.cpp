@@ -31,9 +31,10 @@ Reach reach_of(const Scene& scene) {
     return {std::max({largest.x, largest.y, largest.z}), std::max({half.x, half.y, half.z})};
 }
 
-// Volumes multiply three coordinates and the welder squares the precision of one.
+// Lengths of area vectors are fourth powers of lengths: at 1e70 m they overflow no double, and at
+// 1e-70 m a face as narrow as the precision keeps its digits.
 void check_reach(const Scene& scene, const Reach& reach) {
-    constexpr double kLargest = 1e100, kSmallest = 1e-100;
+    constexpr double kLargest = 1e70, kSmallest = 1e-70;
     if (reach.largest > kLargest || (reach.largest > 0 && reach.half_side < kSmallest))
         throw InputError(scene.file + ": the largest coordinate is " + number(reach.largest) +
                          " m, out of range");

@@ -175,11 +175,13 @@ TEST(Faces, PatchSizeOutOfRangeIsAnInputError) {
 }
 
 TEST(Faces, HugeTinyAndDistantWorldsGiveTheSameMesh) {
-    for (const double scale : {1e-30, 1e-3, 1e6, 1e30}) {
+    for (const double scale : {1e-69, 1e-30, 1e-3, 1e6, 1e30, 9e69}) {
         auto faces = room({0, 0, 0}, {scale, scale, scale});
         EXPECT_EQ(mesh_of(faces, 0.2 * scale).patches.size(), 150u) << scale;
     }
     EXPECT_THROW(mesh_of({rectangle(0, 0, 1e200, 1e200)}, 1), InputError);
+    EXPECT_THROW(mesh_of({rectangle(0, 0, 1e71, 1e71)}, 1e71), InputError);
+    EXPECT_THROW(mesh_of({rectangle(0, 0, 1e-71, 1e-71)}, 1e-71), InputError);
 }
 
 TEST(Materials, ReflectanceIsLimitedWithOneWarning) {
