@@ -25,14 +25,18 @@
 //  (1) y is at a distance t along the ray, to within d, so |h - c t| <= d and
 //      min |y| - d <= t <= max |y| + d: the range of depths.
 //  (2) y satisfies dot(cross(q, p), y) / |q - p| >= 0, and this is a moment that d changes by no
-//      more than d |O to edge line|. With y = t x to within d: m >= -d |O to edge line| / t. An
-//      edge may also be moved outwards by d, so the slack is at least d.
+//      more than d |O to edge line|. With y = t x to within d: m >= -d |O to edge line| / t.
 //  (3) The signed count of intersections of ray and polygon changes only where the polygon's
 //      boundary comes across the ray or the polygon across O. With m > d at every edge the former
 //      does not happen, as |m| is at most the distance from ray to edge; with h > d neither does
 //      the latter. The hit is then sure, whatever the displacement, and no farther than the range
 //      of (1).
-// A polygon is admissible if (1) and (2) hold and no sure hit lies wholly before its range. Each
+//  (4) The moments themselves may err by d, as floats do, or edges be moved outwards by it. Of an
+//      edge that points at O, d moves the line by more than d, by d over the sine of their angle;
+//      so with -d <= m < 0 the ray may hit the plane beyond the polygon, and the range of depths
+//      is the plane's, too. Off its ends a line also turns: m = dot(cross(q, p), x) / |q - p|
+//      changes by up to d (|cross(p, x)| + |cross(q, x)|) / |q - p|, which is d between the ends.
+// A polygon is admissible if (1) and (2) hold, or (4), and no sure hit lies before its range. Each
 // polygon has its own d; they meet only in their ranges, which hold that d.
 //
 // Displaced vertices turn a normal by up to 2 d / width: one up, the opposite edge down; by no more
@@ -61,6 +65,8 @@ struct Range {
 struct Edge {
     dvec3 moment;     // cross(q, p) / |q - p|
     double distance;  // from the origin to the edge's line
+    dvec3 from, to;
+    double length;
 };
 
 // A polygon as the origin knows it.
@@ -129,7 +135,7 @@ void set_edges(Target& target, const std::array<dvec3, 4>& corners) {
         const double length = glm::length(q - p);
         if (length == 0) continue;
         const dvec3 moment = moment_of(p, q) / length;
-        target.edges[target.edge_count++] = {moment, glm::length(moment)};
+        target.edges[target.edge_count++] = {moment, glm::length(moment), p, q, length};
     }
 }
 
@@ -159,7 +165,8 @@ void set_bounds(Target& target, const std::array<dvec3, 4>& corners, const Shoot
     radius = (radius + target.bound) * (1 + kOwnRounding);
     const double away = glm::length(middle);
     target.distance = {std::max(0.0, away - radius), away + radius};
-    const bool around = away <= radius;
+    // Moments that err by d reach out of the cone, where the ball is as near as a thousand d.
+    const bool around = away - radius <= 1e3 * target.bound;
     const dvec3 towards = around ? shooter.normal : middle / away;
     const double half_angle = around ? std::numbers::pi : std::asin(radius / away) + 1e-7;
     if (component_range(towards, half_angle, shooter.normal).high <= 0) return;
@@ -222,18 +229,41 @@ Range depth_range(const Target& target, double cosine) {
     return {std::max(slab.low, target.distance.low), std::min(slab.high, target.distance.high)};
 }
 
+// (4) above: the moment's change where the ends move by 1.
+double turned_by(const Edge& edge, const dvec3& direction) {
+    return (glm::length(glm::cross(edge.from, direction)) +
+            glm::length(glm::cross(edge.to, direction))) /
+           edge.length;
+}
+
+// (4) above: of the plane, displaced by the bound and turned by the tilt.
+Range plane_range(const Target& target, double cosine) {
+    const double steepest = cosine + target.tilt, flattest = cosine - target.tilt;
+    return {std::max(0.0, (target.height - target.bound) / steepest),
+            flattest > 0 ? (target.height + target.bound) / flattest : kInfinity};
+}
+
 std::optional<Sighting> sight(const Target& target, const dvec3& direction) {
     const double cosine = -glm::dot(target.normal, direction);
     if (cosine <= -target.tilt) return std::nullopt;
-    const Range range = depth_range(target, cosine);
-    if (range.low > range.high) return std::nullopt;
+    Range range = depth_range(target, cosine);
+    bool displaced = range.low <= range.high, outlined = true;
     double least = kInfinity;
     for (int k = 0; k < target.edge_count; ++k) {
         const Edge& edge = target.edges[k];
         const double moment = glm::dot(edge.moment, direction);
-        const double slack = target.bound * std::max(1.0, edge.distance / range.low);  // (2)
-        if (!target.edge_on && moment < -slack) return std::nullopt;
+        displaced = displaced &&
+                    (target.edge_on || moment >= -target.bound * edge.distance / range.low);  // (2)
+        outlined = outlined && (moment >= -target.bound ||
+                                moment >= -target.bound * turned_by(edge, direction));  // (4)
         least = std::min(least, moment);
+    }
+    if (!displaced && !outlined) return std::nullopt;
+    if (outlined && least < 0) {
+        const Range beyond = plane_range(target, cosine);
+        range = displaced
+                    ? Range{std::min(range.low, beyond.low), std::max(range.high, beyond.high)}
+                    : beyond;
     }
     const bool hit = target.height > 0 && cosine > 0 && least >= 0;
     const bool sure = hit && !target.edge_on && least > target.bound;  // (3)
