@@ -107,6 +107,26 @@ TEST(ClosedRooms, NothingEscapesFromFurnishedRoomsTurnedAtRandom) {
     expect_furnished_rooms_closed(256, 3, 6, 3);
 }
 
+// A plane is seen from higher than kPlaneMargin of the distance of a corner; from below, it
+// touches, and half of the hemisphere or all of it is lost. Walls of 4 x 4 patches of 3 x 3
+// shooters: the lowest are a 24th of the height above the floor, and the nearest corner is within
+// 0.36.
+TEST(ClosedRooms, NothingEscapesFromFlatRoomsDownToACrack) {
+    std::mt19937 random(7);
+    for (const double height : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9}) {
+        Pieces pieces;
+        const auto walls = box({1, 1, 0.5 * height}, 4);
+        for (std::size_t patch = 0; patch < walls.size(); ++patch)
+            pieces.add(walls[patch], std::uint32_t(patch / 16));
+        const auto escapes = escapes_from(mesh_of(turned(pieces, random_rotation(random))), 64, 5);
+        std::ostringstream scene;
+        scene << "box of height " << height << " and width 2";
+        print(scene.str(), 64, escapes);
+        if (height > 24 * (0.36 * kPlaneMargin + 2 * kGridMargin))
+            expect_none(escapes, scene.str(), 64);
+    }
+}
+
 class LongClosed : public testing::TestWithParam<Cut> {};
 INSTANTIATE_TEST_SUITE_P(Cuts, LongClosed, testing::ValuesIn(kCuts),
                          [](const auto& cut) { return name_of(cut.param); });

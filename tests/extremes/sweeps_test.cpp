@@ -154,6 +154,36 @@ TEST_F(Sweep, PatchesCloseToTheShootersPlane) {
     });
 }
 
+// One patch wide, and cut into 49: of the whole hemisphere or nothing, as cull_patches has it,
+// which takes what is lower than kPlaneMargin of a corner's distance for touching.
+TEST_F(Sweep, CeilingsAreSeenDownToWhereTheyTouch) {
+    for (const int cells : {1, 7}) {
+        double lowest_seen = 1;
+        for (const double height : powers_of_ten(-1, -12)) {
+            std::vector<Polygon> polygons = {kFloor};
+            const double side = 2.0 / cells;
+            for (int i = 0; i < cells * cells; ++i)
+                polygons.push_back(
+                    square({(i % cells + 0.5) * side - 1, (i / cells + 0.5) * side - 1, height}, kY,
+                           kX, side));
+            stage_.show(turned(polygons, random_rotation(random_)));
+            const auto owners = stage_.owners_seen_by(0);
+            const auto seen = static_cast<double>(
+                std::ranges::count_if(owners, [](int owner) { return owner > 0; }));
+            const double part = seen / double(disk_proxel_count(128));
+            if (part > 0) lowest_seen = height;
+            print(cells == 1 ? "height of a ceiling over its half width"
+                             : "height of a ceiling of 49 patches",
+                  height, std::to_string(part) + " of the hemisphere");
+            const double corner = std::numbers::sqrt2 / cells;  // the nearest patch's, in world
+            const bool apart = height > 2 * kPlaneMargin * corner + 4 * kGridMargin;
+            EXPECT_TRUE(part > 0.98 || !apart || height > 0.05) << height << ": " << part;
+        }
+        EXPECT_LT(lowest_seen, 1e-5);
+        EXPECT_GT(lowest_seen, 1e-9);
+    }
+}
+
 // Hinged on the shooter's edge and corner, from flat on it to flat beside it.
 TEST_F(Sweep, PatchesThatShareAnEdgeOrACornerWithTheShooter) {
     const double pi = std::numbers::pi;
