@@ -25,5 +25,11 @@ TEST_P(LongExtremes, TheMostHemispheresOfAPlane) {
     expect_one_shot(lamp_above_floor(1, 1), one_shot(GetParam(), 512, 64));
 }
 
+TEST_P(LongExtremes, TwoMillionPatchesTakeTheirShot) {
+    const Mesh mesh = lamp_above_floor(2000, 1000);
+    ASSERT_EQ(mesh.patches.size(), 2'000'001u);
+    expect_one_shot(mesh, one_shot(GetParam(), 512));
+}
+
 }  // namespace
 }  // namespace hemirad::test

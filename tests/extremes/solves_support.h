@@ -7,6 +7,15 @@
 
 #include "solver/support.h"
 
+namespace hemirad {
+
+/// For the names of tests.
+inline void PrintTo(FormFactorMode mode, std::ostream* out) {
+    *out << (mode == FormFactorMode::count ? "count" : "analytic");
+}
+
+}  // namespace hemirad
+
 /// Rooms, settings and checks of solves at the extremes.
 namespace hemirad::test {
 
@@ -26,9 +35,7 @@ inline Scene of_reflectance(Scene scene, double reflectance) {
     return scene;
 }
 
-inline std::string name_of(FormFactorMode mode) {
-    return mode == FormFactorMode::count ? "count" : "analytic";
-}
+inline std::string name_of(FormFactorMode mode) { return testing::PrintToString(mode); }
 
 /// No value of a solution is below 0, infinite or no number at all.
 inline void expect_numbers(const Solution& solution) {

@@ -35,12 +35,11 @@ INSTANTIATE_TEST_SUITE_P(Scenes, LongLedgers,
                          testing::Values("furnace.obj", "squares.obj", "cornell.gltf", "lroom.obj",
                                          "hall2k.obj", "hall14k.obj"));
 
-TEST_P(LongLedgers, AddUpAtTheDefaults) {
+// Shots enough for all but the halls to converge, and few enough for the halls to end.
+TEST_P(LongLedgers, AddUpAfterTenThousandShots) {
     const Mesh mesh = meshed(scene_named(GetParam()), 0);
     const auto device = mp1map::Device::open("");
-    auto how = settings(512);
-    how.time_limit = 400;
-    ProgressiveSolver solver(mesh, how, device);
+    ProgressiveSolver solver(mesh, settings(512, 1e-3, 10'000), device);
 
     solver.solve(go_on);
 
