@@ -8,8 +8,9 @@ namespace {
 
 constexpr double kPatchSize = 0.75;
 constexpr std::uint32_t kResolution = 64;
-constexpr double kRoomLength = 6;               // m, of furnished_room()
-constexpr double kDistances[] = {1, 1e2, 1e3};  // from the origin, in lengths of the room
+constexpr double kQuantum = 1e-7;  // m, of the coordinates: doubles have it as far as we go
+constexpr double kRoomLength = 6;  // m, of furnished_room()
+constexpr double kDistances[] = {1, 1e3, 1e5, 1e7};  // from the origin, in lengths of the room
 
 SolverSettings how(FormFactorMode mode, std::uint32_t resolution = kResolution) {
     return settings(resolution, mode, 1e-2);
@@ -65,8 +66,9 @@ double largest_change(const std::vector<std::vector<double>>& from,
 /// What a solution depends on besides the scene: how its plane is sampled.
 class Resampled : public Scale {
   protected:
-    std::vector<std::vector<double>> means(const Scene& scene, double patch_size = kPatchSize,
+    std::vector<std::vector<double>> means(Scene scene, double patch_size = kPatchSize,
                                            std::uint32_t resolution = kResolution) const {
+        scene.quantum = kQuantum * patch_size / kPatchSize;
         const Mesh mesh = meshed(scene, patch_size);
         const Solution solution = solution_of(mesh, how(GetParam(), resolution));
         expect_numbers(solution);

@@ -162,6 +162,18 @@ class Sizes(Extremes):
                                                patch_size=0.25 * factor))
                 self.assertEqual(metres, self.picture(), (mode, power))
 
+    def test_far_from_the_origin_change_neither_light_nor_walls(self):
+        self.assert_numbers(self.solve(PLAIN))
+        here = self.report()["ledger"]["R"]["emitted"]
+        # Nine digits could be those of a float; a file in doubles shows more.
+        for away in (1234.567891, 1e7 + 0.123456, -1e7 - 0.123456):
+            parts = mapped(PLAIN, lambda x, away=away: round(x + away, 6))
+            self.assert_numbers(self.solve(parts))
+            ledger = self.report()["ledger"]["R"]
+            self.assertEqual(0, ledger["escaped"])
+            # An ulp of the corners, 2^-29 m at 1e7, of a lamp of 0.2 m.
+            self.assertAlmostEqual(1, ledger["emitted"] / here, delta=4 * 2.0**-29 / 0.2)
+
     def test_beyond_what_squares_of_doubles_hold_are_refused(self):
         for size in (1e-160, 1e160):
             parts = mapped(PLAIN, lambda x, size=size: x * size)
