@@ -19,10 +19,9 @@ inline double shot_over_emitted(const Mesh& mesh, const Solution& solution, std:
 /// by at most 2^-24 of the flux each, in the worst case all to one side: the ledger may lack three
 /// times as much of all flux that was ever shot, however many shots it took. Sums add nothing to
 /// it: what is received is compensated, and what is unshot starts from 0 after each shot.
-inline void expect_closed_books(FormFactorMode mode, std::uint64_t shots) {
+inline void expect_closed_books(FormFactorMode mode, std::uint64_t shots, double patch_size = 0.5) {
     constexpr double kMostReflectance = 0.98;  // unless asked for more
-    constexpr double kPatchSize = 0.5;         // m; with fewer patches nothing is left to shoot
-    const Mesh mesh = meshed(of_reflectance(furnished_room(), kMostReflectance), kPatchSize);
+    const Mesh mesh = meshed(of_reflectance(furnished_room(), kMostReflectance), patch_size);
 
     const Solution solution = solution_of(mesh, settings(32, mode, kEveryShot, shots));
 
