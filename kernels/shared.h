@@ -21,11 +21,13 @@ typedef uint uint32_t;
 // patch, and for the shooter's origin, 3 sqrt(3) / 2 steps in all.
 #define kGridMargin 2.5e-9f
 
-// An arc is moved outwards by kEdgeMargin of the distance r of its farther end (and kGridMargin),
+// An arc is moved outwards by kEdgeMargin of the distance r of its nearer end (and kGridMargin),
 // so that single precision loses no proxel between neighbours; what two patches then both claim
-// goes to the nearer one. With e = 2^-24, the worst that can befall an edge's moment is, in e r: its
-// ends' conversion 1 and turn into the shooter's frame 3, the difference of the ends 1, cross
-// product 2, two scalings 2, evaluation 3: in all 12 e = 7.2e-7.
+// goes to the nearer one. With e = 2^-24, the worst that can befall an edge's moment is, in e r: the
+// difference of its ends 1, its product with the nearer one 2, two scalings 2, evaluation 3. A point
+// at y of the edge is displaced by its conversion, e y, and turn into the shooter's frame, 3 e y,
+// which changes the moment by 4 e times the distance of the edge's line, at most 4. In all
+// 12 e = 7.2e-7.
 #define kEdgeMargin 7.5e-7f
 // A patch is seen only if the shooter lies in front of its plane, and it in front of the
 // shooter's, by more than that of a corner's distance (and kGridMargin): below, nothing but rounding
@@ -68,7 +70,7 @@ typedef struct {
 
 // Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
 // An edge is (A, B, C) of eq. 1.2 as a moment: its value is the length by which the edge misses a
-// proxel's ray, over the distance of the edge's farther end; positive inside.
+// proxel's ray, over the distance of the edge's nearer end; positive inside.
 // depth is (A", B", C") of app. A. columns and rows are first | last << 16, of proxels.
 typedef struct {
     float edge[4][3];

@@ -116,7 +116,7 @@ TEST_P(EllipseBounds, AreNeverTooSmallAndTightToOneProxel) {
         const auto expected = exact_bounds_of(arcs, i);
         // What kEdgeMargin may displace the arc by is no looseness but asked for.
         const double reach =
-            std::max(glm::length(exact(arcs.from[i])), glm::length(exact(arcs.to[i]))) +
+            std::min(glm::length(exact(arcs.from[i])), glm::length(exact(arcs.to[i]))) +
             kGridMargin / kEdgeMargin;
         const int granted =
             1 + static_cast<int>(0.5 * GetParam() * kEdgeMargin * reach / expected.distance);

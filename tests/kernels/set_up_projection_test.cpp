@@ -12,15 +12,15 @@ constexpr std::uint32_t kResolution = 64;
 using Plane = std::array<float, 3>;
 
 // The moment of the line p -> q per unit length, about the hemisphere's centre, over the distance
-// of its farther end and what the grid adds.
+// of its nearer end and what the grid adds.
 Plane edge_plane(Scalar3 p, Scalar3 q) {
     const auto d = scalar_difference(q, p);
     const float squared = scalar_dot(d, d);
     if (squared == 0) return {0, 0, 1};  // all that is above the horizon is inside
     const float scale = 1.0f / std::sqrt(squared);
-    const auto moment = scalar_cross(d, p);
+    const auto moment = scalar_cross(d, scalar_dot(q, q) < scalar_dot(p, p) ? q : p);
     const float reach =
-        std::sqrt(std::max(scalar_dot(p, p), scalar_dot(q, q))) + kGridMargin / kEdgeMargin;
+        std::sqrt(std::min(scalar_dot(p, p), scalar_dot(q, q))) + kGridMargin / kEdgeMargin;
     const float over = 1.0f / reach;
     return {over * (scale * moment.x), over * (scale * moment.y), over * (scale * moment.z)};
 }
