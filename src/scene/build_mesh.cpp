@@ -132,14 +132,14 @@ class Mesher {
         }
     }
 
-    // Nobody sees the inside of a closed solid, nor the back of a sheet whose other side is
-    // modelled too. That holds for double-sided materials as well, which exporters set freely; only
-    // `block` trusts no solid, e.g. where objects poke into one another.
+    // Nobody sees the inside of a closed solid without a lamp in it, nor the back of a sheet whose
+    // other side is modelled too. That holds for double-sided materials as well, which exporters
+    // set freely; only `block` trusts no solid, e.g. where objects poke into one another.
     Back back_of(const Group& group) const {
         const Flat& flat = faces_.flats[group.front()];
-        const bool closed = parts_.parts[parts_.part_of_flat[group.front()]].closed;
+        const Part& part = parts_.parts[parts_.part_of_flat[group.front()]];
         const bool block = settings_.backfaces == Backfaces::block;
-        if (flat.has_reverse || (closed && !block)) return Back::none;
+        if (flat.has_reverse || (part.closed && !part.holds_light && !block)) return Back::none;
         if (scene_.materials[scene_.faces[flat.face].material].double_sided) return Back::mirror;
         return settings_.backfaces == Backfaces::cull ? Back::none : Back::absorber;
     }

@@ -195,6 +195,40 @@ std::optional<InsideOut> find_inside_out(const FlatFaces& faces, const Parts& pa
     return InsideOut{part, vertices[faces.outline(faces.flats[std::size_t(first)])[0]]};
 }
 
+bool emits(const Material& material) {
+    return std::ranges::any_of(material.emission, [](double value) { return value > 0; });
+}
+
+glm::dvec3 mean_corner(std::span<const std::uint32_t> outline, const Vertices& vertices) {
+    glm::dvec3 mean(0);
+    for (const std::uint32_t v : outline) mean += vertices[v] / double(outline.size());
+    return mean;
+}
+
+bool lies_in(const glm::dvec3& point, const Extent& extent) {
+    return lies_in(Extent{point, point}, extent);
+}
+
+// Solids around a lamp's face. Of many faces of lamps within a solid's box a few are asked.
+void find_light_holders(const Scene& scene, const FlatFaces& faces,
+                        const std::vector<Extent>& extents, const Vertices& vertices,
+                        Parts& parts) {
+    constexpr int kMostAsked = 16;
+    std::vector<int> asked(parts.parts.size(), 0);
+    for (std::uint32_t f = 0; f < faces.flats.size(); ++f) {
+        const Flat& flat = faces.flats[f];
+        if (!emits(scene.materials[scene.faces[flat.face].material])) continue;
+        const glm::dvec3 eye = mean_corner(faces.outline(flat), vertices);
+        for (std::uint32_t p = 0; p < parts.parts.size(); ++p) {
+            Part& part = parts.parts[p];
+            if (p == parts.part_of_flat[f] || !part.closed || part.holds_light) continue;
+            if (!(extents[p].volume > 0) || !lies_in(eye, extents[p])) continue;
+            if (asked[p]++ < kMostAsked)
+                part.holds_light = turns_round(faces, parts, p, vertices, eye) > 0.75;
+        }
+    }
+}
+
 void list_parts(const Scene& scene, const FlatFaces& faces, DisjointSets& sets, Parts& parts) {
     constexpr std::uint32_t kUnseen = 0xffffffffu;
     std::vector<std::uint32_t> part_of_root(faces.flats.size(), kUnseen);
@@ -233,6 +267,7 @@ Parts find_parts(const Scene& scene, const FlatFaces& faces, std::span<const Edg
     const auto extents = measure(faces, parts, vertices);
     parts.encloses_all = encloses_all(parts, extents);
     parts.inside_out = find_inside_out(faces, parts, extents, vertices);
+    find_light_holders(scene, faces, extents, vertices, parts);
     return parts;
 }
 

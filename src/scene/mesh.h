@@ -55,6 +55,7 @@ struct Part {
     std::vector<std::uint32_t> objects;  ///< names of the objects it touches
     std::uint32_t face_count = 0;
     bool closed = false;             ///< every edge shared by two faces of opposite direction
+    bool holds_light = false;        ///< a solid around a lamp, which sees the backs of its faces
     bool doubled = false;            ///< holds faces of double-sided materials
     std::uint32_t back_patches = 0;  ///< backs that --backfaces gave it
 };

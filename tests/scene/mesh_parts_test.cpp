@@ -141,6 +141,20 @@ TEST(Backs, OnlyOpenPartsGetThem) {
     EXPECT_EQ(mesh.parts[1].back_patches, 1u);
 }
 
+TEST(Backs, ASolidAroundALampGetsThemAndOneBesideItDoesNot) {
+    Scene scene = scene_of(kRoom + kSolid);
+    scene.materials.push_back({"lamp", {0.0}, {1.0}, false});
+    for (const auto& face : solid_box({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6})) add_face(scene, face, 1);
+    for (const auto& face : solid_box({0.1, 0.1, 0.1}, {0.2, 0.2, 0.2})) add_face(scene, face);
+
+    const Mesh mesh = build_mesh(scene, {.patch_size = 10});
+
+    ASSERT_EQ(mesh.parts.size(), 4u);
+    EXPECT_TRUE(mesh.parts[1].holds_light);
+    EXPECT_EQ(mesh.parts[1].back_patches, 6u);
+    EXPECT_EQ(back_count(mesh), 6u);
+}
+
 TEST(Backs, BlockGivesThemToClosedPartsToo) {
     EXPECT_EQ(back_count(mesh_of(kSolid, 10, Backfaces::block)), 6u);
 }
