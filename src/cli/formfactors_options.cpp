@@ -123,6 +123,7 @@ std::vector<std::pair<std::string, std::string>> deciding_options(
          factors.shooter_samples == 0 ? "auto" : std::to_string(factors.shooter_samples)},
         {"--patch-size", number_text(options.mesh.patch_size)},
         {"--backfaces", name_of(options.mesh.backfaces)}};
+    if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (factors.target_error)
         result.emplace_back("--target-error", number_text(*factors.target_error));
     for (const auto& [option, names] : {std::pair("--from", &options.from),

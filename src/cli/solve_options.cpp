@@ -222,6 +222,7 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         {"--max-reflectance", number_text(options.mesh.max_reflectance)},
         {"--tolerance", number_text(solver.tolerance)},
         {"--quantity", name_of(options.quantity)}};
+    if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (options.target_error)
         result.emplace_back("--target-error", number_text(*options.target_error));
     if (solver.max_shots != SolverSettings{}.max_shots)

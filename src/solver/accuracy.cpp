@@ -73,17 +73,19 @@ double missing_light(const Solution& solution) {
 }
 
 double relative_rms_difference(const Mesh& mesh, const Solution& a, const Solution& b) {
-    double largest = 0;
+    double area = 0, largest = 0;
+    for (const Patch& patch : mesh.patches) area += mesh.area(patch);
     for (std::size_t band = 0; band < b.irradiance.size(); ++band) {
-        double squares = 0, flux = 0, area = 0;
-        for (std::size_t patch = 0; patch < mesh.patches.size(); ++patch) {
-            const double own = mesh.area(mesh.patches[patch]);
-            const double off = a.irradiance[band][patch] - b.irradiance[band][patch];
-            squares += own * off * off;
-            flux += own * b.irradiance[band][patch];
-            area += own;
+        // Divided before they are squared: irradiances may be anywhere in a double's range.
+        double mean = 0, squares = 0;
+        for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+            mean += mesh.area(mesh.patches[i]) / area * b.irradiance[band][i];
+        for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
+            const double off = a.irradiance[band][i] - b.irradiance[band][i];
+            if (off == 0) continue;
+            squares += mesh.area(mesh.patches[i]) / area * (off / mean) * (off / mean);
         }
-        if (squares > 0) largest = std::max(largest, std::sqrt(squares * area) / flux);
+        largest = std::max(largest, std::sqrt(squares));
     }
     return largest;
 }

@@ -55,6 +55,17 @@ TEST(RelativeRmsDifference, IsWeighedByAreaAndOfTheWorstBand) {
     EXPECT_NEAR(relative_rms_difference(mesh, a, b), std::sqrt(0.8) / 6, 1e-12);
 }
 
+TEST(RelativeRmsDifference, IsTheSameHoweverStrongTheLight) {
+    const Mesh mesh = mesh_of({square({0, 0, 0}, kX, kY, 1), square({5, 0, 0}, kX, kY, 2)});
+    for (const double strength : {0x1p-1000, 1.0, 0x1p1000}) {
+        Solution a, b;
+        b.irradiance = {{10 * strength, 5 * strength}};
+        a.irradiance = {{11 * strength, 5 * strength}};
+
+        EXPECT_NEAR(relative_rms_difference(mesh, a, b), std::sqrt(0.2) / 6, 1e-12);
+    }
+}
+
 TEST(RelativeRmsDifference, LeavesDarkBandsOut) {
     const Mesh mesh = mesh_of({square({0, 0, 0}, kX, kY, 1)});
     Solution a, b;
