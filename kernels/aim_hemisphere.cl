@@ -93,6 +93,18 @@ static float3 proper_edge(const float3* corner) {
     return edge;
 }
 
+// Along an edge, as far as the plane allows; where the grid has left a patch no edge in its plane,
+// across the axis that is farthest from the normal.
+static float3 frame_axis(float3 edge, float3 normal) {
+    const float3 along = edge - normal * dot(edge, normal);
+    if (dot(along, along) > 0.25f * dot(edge, edge)) return normalize(along);
+    const float3 upright = fabs(normal);
+    const float3 axis = upright.x <= min(upright.y, upright.z)   ? (float3)(1.0f, 0.0f, 0.0f)
+                        : upright.y <= upright.z ? (float3)(0.0f, 1.0f, 0.0f)
+                                                 : (float3)(0.0f, 0.0f, 1.0f);
+    return normalize(cross(normal, axis));
+}
+
 static void store_axis(float3 axis, __global float* to) {
     to[0] = axis.x;
     to[1] = axis.y;
@@ -121,8 +133,7 @@ __kernel void aim_hemisphere(__global Shot* shot, const __global int* corners,
 
     const float3 normal =
         (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
-    const float3 edge = proper_edge(corner);
-    const float3 along = normalize(edge - normal * dot(edge, normal));
+    const float3 along = frame_axis(proper_edge(corner), normal);
     const float angle = disk_angle(patch, part);
     const float3 u_axis = cos(angle) * along + sin(angle) * cross(normal, along);
     store_axis(u_axis, shot->u_axis);

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "extremes/sweep.h"
+#include "solver/support.h"
 
 // Straight on the device, past the mesher, which would drop or mend them: patches without area,
 // twisted ones, cracks; and numbers of proxels and patches beyond a batch, a level or a group.
@@ -89,6 +90,21 @@ TEST(Degenerate, BowTiesAndDartsTakeNothingBesidesTheirHulls) {
 
 // Two halves of a ceiling about a proxel's ray, at distance 1 to 2. The margins seal a crack up to
 // their own width; the first that lets light through is a figure.
+// About a step of the grid, 1e-9: its edges have few bits of a direction, or none.
+TEST(Degenerate, AShooterOfAGridStepSeesTheRoomAroundIt) {
+    Stage stage(128);
+    std::mt19937 random(31);
+    for (const double side : {1e-8, 1e-9, 1e-10, 1e-12})
+        for (int turn = 0; turn < 4; ++turn) {
+            const auto rotation = random_rotation(random);
+            auto polygons = box({1, 0.8, 0.6}, 2);
+            polygons.insert(polygons.begin(), square({0.1, 0.2, 0.15}, {1, 0, 0}, {0, 1, 0}, side));
+            stage.show(turned(polygons, rotation));
+
+            EXPECT_EQ(stage.agreement_of(0).wrong, 0u) << side;
+        }
+}
+
 TEST(Degenerate, CracksOfAnUlpAreSealed) {
     Stage stage(128);
     stage.show(around({}));
