@@ -31,11 +31,12 @@
 //      does not happen, as |m| is at most the distance from ray to edge; with h > d neither does
 //      the latter. The hit is then sure, whatever the displacement, and no farther than the range
 //      of (1).
-//  (4) The moments themselves may err by d, as floats do, or edges be moved outwards by it. Of an
-//      edge that points at O, d moves the line by more than d, by d over the sine of their angle;
-//      so with -d <= m < 0 the ray may hit the plane beyond the polygon, and the range of depths
-//      is the plane's, too. Off its ends a line also turns: m = dot(cross(q, p), x) / |q - p|
-//      changes by up to d (|cross(p, x)| + |cross(q, x)|) / |q - p|, which is d between the ends.
+//  (4) The moments themselves may err by d', the bound at the edge's nearer end, as floats do, or
+//      edges be moved outwards by it. Of an edge that points at O, d' moves the line by more than
+//      d', by d' over the sine of their angle; so with -d' <= m < 0 the ray may hit the plane
+//      beyond the polygon, and the range of depths is the plane's, too. Off its ends a line also
+//      turns: m = dot(cross(q, p), x) / |q - p| changes by up to d (|cross(p, x)| + |cross(q, x)|)
+//      / |q - p|, which is d between the ends.
 // A polygon is admissible if (1) and (2) hold, or (4), and no sure hit lies before its range. Each
 // polygon has its own d; they meet only in their ranges, which hold that d.
 //
@@ -67,6 +68,7 @@ struct Edge {
     double distance;  // from the origin to the edge's line
     dvec3 from, to;
     double length;
+    double bound;  // d' above
 };
 
 // A polygon as the origin knows it.
@@ -128,14 +130,16 @@ dvec3 moment_of(const dvec3& p, const dvec3& q) {
     return precedes(p, q) ? glm::cross(q - p, p) : -glm::cross(p - q, q);
 }
 
-void set_edges(Target& target, const std::array<dvec3, 4>& corners) {
+void set_edges(Target& target, const std::array<dvec3, 4>& corners, const Bound& bound) {
     for (std::size_t k = 0; k < 4; ++k) {
         const dvec3 p = corners[k];
         const dvec3 q = corners[(k + 1) % 4];
         const double length = glm::length(q - p);
         if (length == 0) continue;
         const dvec3 moment = moment_of(p, q) / length;
-        target.edges[target.edge_count++] = {moment, glm::length(moment), p, q, length};
+        const double nearer = std::min(glm::length(p), glm::length(q));
+        target.edges[target.edge_count++] = {
+            moment, glm::length(moment), p, q, length, bound.relative * nearer + bound.absolute};
     }
 }
 
@@ -194,7 +198,7 @@ std::optional<Target> target_of(const Polygon& polygon, const Shooter& shooter, 
     for (dvec3& corner : corners) corner -= shooter.origin;
     target.bound = bound.relative * farthest(corners) + bound.absolute;
     set_bounds(target, corners, shooter, resolution);
-    set_edges(target, corners);
+    set_edges(target, corners, bound);
     target.height = -glm::dot(target.normal, corners[0]);
     target.tilt = std::min(2 * target.bound / least_width(corners), bound.turn);
     const double play = target.bound + target.tilt * target.distance.high;
@@ -254,7 +258,7 @@ std::optional<Sighting> sight(const Target& target, const dvec3& direction) {
         const double moment = glm::dot(edge.moment, direction);
         displaced = displaced &&
                     (target.edge_on || moment >= -target.bound * edge.distance / range.low);  // (2)
-        outlined = outlined && (moment >= -target.bound ||
+        outlined = outlined && (moment >= -edge.bound ||
                                 moment >= -target.bound * turned_by(edge, direction));  // (4)
         least = std::min(least, moment);
     }
