@@ -12,7 +12,7 @@ __kernel void prefix_sum(__global Shot* shot, __global int* values, int count, u
     uint sum = 0;
     for (int i = first; i < end; ++i) sum = add_sat(sum, (uint)values[i]);
     sums[pe] = sum;
-    barrier(CLK_LOCAL_MEM_FENCE);
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // all have read the status by now
 
     uint before = 0;
     for (int other = 0; other < pe; ++other) before = add_sat(before, sums[other]);

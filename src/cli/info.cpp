@@ -11,6 +11,7 @@
 #include "cli/solve_options.h"
 #include "cli/summary.h"
 #include "cli/text.h"
+#include "errors.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
 #include "scene/printable.h"
@@ -110,6 +111,7 @@ int print_info(InfoOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
     const auto mesh = build_mesh(scene, options.mesh);
+    if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);
     print_contents(out, scene, mesh, options.mesh.patch_size);
     print_parts(out, mesh, options.mesh.backfaces);
     print_bands(out, mesh);

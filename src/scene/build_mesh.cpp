@@ -27,6 +27,14 @@ namespace {
 
 enum class Back { none, absorber, mirror };
 
+double total_area(const Scene& scene) {
+    double total = 0;
+    for (const Face& face : scene.faces)
+        if (face.vertices.size() > 2)
+            total += glm::length(area_vector(face.vertices, scene.positions));
+    return total;
+}
+
 /// Turns a scene into a mesh, a stage a function, in the order of `run`.
 class Mesher {
   public:
@@ -76,6 +84,10 @@ class Mesher {
             throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
                              " m is not above the precision of the coordinates, " +
                              number(kLeastInPrecisions * precision_.plane) + " m");
+        constexpr double kMostPatches = 1e8;  // some 20 GB
+        if (total_area(scene_) > kMostPatches * settings_.patch_size * settings_.patch_size)
+            throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
+                             " m is too small: there would be more than 100 million patches");
     }
 
     void flatten_faces() {
@@ -235,10 +247,7 @@ Mesh build_mesh(const Scene& scene, const MeshSettings& settings) {
 // 3,000 cells' worth of area: with its borders a Cornell box gets some 3,300 patches.
 double default_patch_size(const Scene& scene) {
     constexpr double kCells = 3000;
-    double total = 0;
-    for (const Face& face : scene.faces)
-        if (face.vertices.size() > 2)
-            total += glm::length(meshing::area_vector(face.vertices, scene.positions));
+    const double total = meshing::total_area(scene);
     return total > 0 ? meshing::round_to_two_digits(std::sqrt(total / kCells)) : 1.0;
 }
 

@@ -221,6 +221,9 @@ class Emissions(Extremes):
             result = self.solve(PLAIN)
             self.assert_refused(result, 'scene.obj: band "G" emits ', "is counted")
             self.assertEqual(1, result.stderr.count("\n"), result.stderr)
+            info = subprocess.run([HEMIRAD, "info", "scene.obj"], cwd=self.folder, text=True,
+                                  capture_output=True, timeout=120, check=False)
+            self.assert_refused(info, 'scene.obj: band "G" emits ', "is counted")
 
     def test_beyond_the_pixels_are_refused_and_below_are_told(self):
         for emission, pixels, fault in (("1e41", (), "range of float"),

@@ -172,6 +172,8 @@ TEST(Faces, PatchSizeOutOfRangeIsAnInputError) {
     EXPECT_THROW(mesh_of({wall}, std::nan("")), InputError);
     EXPECT_THROW(mesh_of({wall}, 1e-9), InputError);
     EXPECT_THROW(mesh_of({wall}, 1e-5), InputError);
+    // Fewer than 100 million on every wall, but not on all six; told before any is made.
+    EXPECT_THROW(mesh_of(room({0, 0, 0}, {1, 1, 1}), 1.3e-4), InputError);
 }
 
 TEST(Faces, HugeTinyAndDistantWorldsGiveTheSameMesh) {
