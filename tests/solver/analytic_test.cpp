@@ -45,6 +45,33 @@ TEST(Analytic, NothingHidesTheWallsOfAnEmptyRoomFromAPlaneOfFewProxels) {
         EXPECT_NEAR(coarse.irradiance[0][i] / fine.irradiance[0][i], 1, 1e-3);
 }
 
+// Where neighbours both claim a proxel at their edge, the one that does not get it is not hidden.
+TEST(Analytic, NothingHidesAnyPatchOfAConvexRoom) {
+    std::mt19937 random(41);
+    PipelineSettings analytic_factors;
+    analytic_factors.form_factor = FormFactorMode::analytic;
+    for (int turn = 0; turn < 4; ++turn) {
+        auto walls = box({1, 0.7, 0.5}, 8);
+        const auto rotation = random_rotation(random);
+        for (auto& wall : walls)
+            for (auto& corner : wall.corners) corner = rotation * corner;
+        Aimed aimed(walls, shapes()[turn % 3], 256, analytic_factors);
+        const std::size_t stride = aimed.pipeline().stride();
+        for (int shooter = 0; shooter < static_cast<int>(walls.size()); shooter += 5) {
+            aimed.aim(shooter);
+            aimed.project();
+
+            const auto factors = aimed.pipeline().factors();
+
+            for (std::size_t patch = 0; patch < walls.size(); ++patch)
+                ASSERT_EQ(factors[kVisibleFactor * stride + patch],
+                          factors[kUnblockedFactor * stride + patch])
+                    << "from " << shooter << " to " << patch;
+            aimed.pipeline().clear_counts();
+        }
+    }
+}
+
 TEST(Analytic, TheLedgerCloses) {
     for (const char* const name : {"hall2k.obj", "squares.obj", "lroom.obj", "cornell.gltf"}) {
         const auto how = [&] {
