@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "formfactor/polygon_factors.h"
 #include "reference/closed_forms.h"
 #include "support/patches.h"
 
@@ -43,6 +44,24 @@ TEST(NearPairs, FindALargeReceiverOfSmallShooters) {
     const auto near = near_pairs(mesh_of(polygons), 1e-3);
 
     for (int i = 1; i <= 20; ++i) EXPECT_EQ(near.begin[i + 1] - near.begin[i], 1) << i;
+}
+
+// A lamp of a micrometre or so in a hall: over it, it is a point.
+TEST(NearPairs, HoldHoweverSmallOneOfTwoIs) {
+    for (const double side : {1e-2, 1e-4, 1e-6}) {
+        const auto mesh =
+            mesh_of({square({0, 0, 0}, kX, kY, 30), square({3, 2, 15}, kY, kX, side)});
+
+        const auto near = near_pairs(mesh, 1e-12);
+
+        ASSERT_EQ(near.begin, (std::vector<std::int32_t>{0, 1, 2}));
+        const auto& floor = mesh.patches[0].corners;
+        std::vector<glm::dvec3> corners;
+        for (const auto corner : floor) corners.push_back(mesh.vertices[corner]);
+        const double expected = point_to_polygon({3, 2, 15}, {0, 0, -1}, corners);
+        EXPECT_NEAR(near.form_factor[1] / expected, 1, 1e-6) << side;
+        EXPECT_NEAR(near.form_factor[0] / expected / side / side * 900, 1, 1e-6) << side;
+    }
 }
 
 TEST(ShooterSamples, AreManyOnlyWhereSomethingIsNear) {
