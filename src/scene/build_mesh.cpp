@@ -60,6 +60,7 @@ class Mesher {
         number_planes(precision_, mesh_);
         look_for_overlaps();
         look_for_inside_out();
+        look_for_slender_patches();
         mesh_.parts = std::move(parts_.parts);
         mesh_.closed = parts_.encloses_all;
         return std::move(mesh_);
@@ -83,7 +84,8 @@ class Mesher {
         if (!(settings_.patch_size > kLeastInPrecisions * precision_.plane))
             throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
                              " m is not above the precision of the coordinates, " +
-                             number(kLeastInPrecisions * precision_.plane) + " m");
+                             number(kLeastInPrecisions * precision_.plane) +
+                             " m; where they are more precise, --weld says so");
         constexpr double kMostPatches = 1e8;  // some 20 GB
         if (total_area(scene_) > kMostPatches * settings_.patch_size * settings_.patch_size)
             throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
@@ -186,6 +188,30 @@ class Mesher {
                                  "\" encloses everything else, which sees the backs of its faces, "
                                  "such as at " +
                                  place_text(at) + ": a room's faces have to be turned over");
+    }
+
+    // A patch seen from the middle of its side, at half of its width, has edges that err by 12.6
+    // roundings of half of its length: by 1 % of that width where it is 13,000 times as long.
+    void look_for_slender_patches() {
+        constexpr double kMostSlender = 1e4;
+        std::size_t count = 0, first = 0;
+        for (std::size_t i = 0; i < mesh_.patches.size(); ++i) {
+            const auto& c = mesh_.patches[i].corners;
+            double longest = 0;
+            for (int k = 0; k < 4; ++k)
+                longest = std::max(
+                    longest, glm::distance(mesh_.vertices[c[k]], mesh_.vertices[c[(k + 1) % 4]]));
+            if (longest * longest < kMostSlender * mesh_.area(mesh_.patches[i])) continue;
+            if (count++ == 0) first = i;
+        }
+        if (count == 0) return;
+        mesh_.warnings.push_back(
+            scene_.file + ": " + std::to_string(count) +
+            (count == 1 ? " patch is" : " patches are") +
+            " more than 10,000 times as long as wide, such as at " +
+            place_text(mesh_.centroid(mesh_.patches[first])) +
+            ": what is as near to it as it is wide sees it wrongly by per cents; a smaller "
+            "--patch-size cuts it");
     }
 
     void combine_fragments() {

@@ -209,12 +209,13 @@ bool lies_in(const glm::dvec3& point, const Extent& extent) {
     return lies_in(Extent{point, point}, extent);
 }
 
-// Solids around a lamp's face. Of many faces of lamps within a solid's box a few are asked.
+// Solids around a lamp's face. Where there are too many to ask, those whose boxes hold one: nobody
+// but who is inside sees the backs that they get.
 void find_light_holders(const Scene& scene, const FlatFaces& faces,
                         const std::vector<Extent>& extents, const Vertices& vertices,
                         Parts& parts) {
-    constexpr int kMostAsked = 16;
-    std::vector<int> asked(parts.parts.size(), 0);
+    constexpr std::size_t kMostLooks = 1'000'000'000;  // at a face: a second or two
+    std::size_t looks = 0;
     for (std::uint32_t f = 0; f < faces.flats.size(); ++f) {
         const Flat& flat = faces.flats[f];
         if (!emits(scene.materials[scene.faces[flat.face].material])) continue;
@@ -223,8 +224,9 @@ void find_light_holders(const Scene& scene, const FlatFaces& faces,
             Part& part = parts.parts[p];
             if (p == parts.part_of_flat[f] || !part.closed || part.holds_light) continue;
             if (!(extents[p].volume > 0) || !lies_in(eye, extents[p])) continue;
-            if (asked[p]++ < kMostAsked)
-                part.holds_light = turns_round(faces, parts, p, vertices, eye) > 0.75;
+            looks += faces.flats.size();
+            part.holds_light =
+                looks > kMostLooks || turns_round(faces, parts, p, vertices, eye) > 0.75;
         }
     }
 }

@@ -77,7 +77,7 @@ class Flattener {
           vertices_(vertices),
           precision_(precision.plane),
           twins_(find_twins(outlines)),
-          no_area_(scene, "has no area: dropped"),
+          no_area_(scene, "has no area, or is no wider than twice the weld: dropped"),
           crossing_(scene, "crosses itself: dropped"),
           repeated_(scene, "repeats another face: dropped"),
           warped_(scene, "is not planar: split into triangles") {}

@@ -37,7 +37,9 @@ bool is_float_in_full(double value) {
 
 void TextQuantum::add(std::string_view word, double value) {
     of_floats_ = std::max(of_floats_, half_float_ulp(value));
-    of_decimals_ = std::max(of_decimals_, std::min(half_last_place(word), half_float_ulp(value)));
+    constexpr double kChosen = 5e-4;
+    of_decimals_ =
+        std::max(of_decimals_, std::min({half_last_place(word), half_float_ulp(value), kChosen}));
     all_floats_ = all_floats_ && is_float(value);
     any_in_full_ = any_in_full_ || is_float_in_full(value);
 }

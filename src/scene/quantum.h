@@ -13,8 +13,9 @@ constexpr double half_float_ulp(double value) { return 0x1p-24 * (value < 0 ? -v
 bool is_float_in_full(double value);
 
 /// What the coordinates of a text were rounded to at most: each half a unit of its last decimal, if
-/// that is less than half a float ulp. A text of many decimals may carry floats in full
-/// nonetheless.
+/// that is less than half a float ulp, and no more than half a millimetre: 4500000.0 m was chosen,
+/// and the walls of a house there are thinner than decimetres. A text of many decimals may carry
+/// floats in full nonetheless.
 class TextQuantum {
   public:
     void add(std::string_view word, double value);

@@ -298,8 +298,8 @@ class Faces(Extremes):
     def test_without_area_are_dropped(self):
         thin = [[(.2, .2, .5), (.5, .5, .5), (.8, .8, .5)], [(.3, .3, .3)] * 4]
         self.assert_told(self.solve([*PLAIN, ("thin", "white", thin)]),
-                         'face 7 of "thin" at (0.2, 0.2, 0.5) has no area: dropped',
-                         'face 8 of "thin" at (0.3, 0.3, 0.3) has no area: dropped')
+                         'face 7 of "thin" at (0.2, 0.2, 0.5) has no area, or is no wider',
+                         'face 8 of "thin" at (0.3, 0.3, 0.3) has no area, or is no wider')
 
     def test_of_a_room_given_twice_are_dropped(self):
         self.assert_numbers(self.solve(PLAIN))

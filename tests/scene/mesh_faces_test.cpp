@@ -166,6 +166,14 @@ TEST(Faces, NothingLeftIsAnInputError) {
     EXPECT_THROW(mesh_of(empty_scene(), 1), InputError);
 }
 
+TEST(Faces, PatchesTooSlenderForTheirNeighboursAreTold) {
+    EXPECT_TRUE(warns(mesh_of({rectangle(0, 0, 2e4, 1)}, kUncut),
+                      "hand.obj: 1 patch is more than 10,000 times as long as wide, such as at "
+                      "(10000, 0.5, 0)"));
+    EXPECT_TRUE(mesh_of({rectangle(0, 0, 9e3, 1)}, kUncut).warnings.empty());
+    EXPECT_TRUE(mesh_of({rectangle(0, 0, 2e4, 1)}, 100).warnings.empty());
+}
+
 TEST(Faces, PatchSizeOutOfRangeIsAnInputError) {
     const auto wall = rectangle(0, 0, 1, 1);
     EXPECT_THROW(mesh_of({wall}, -1), InputError);

@@ -155,6 +155,38 @@ TEST(Backs, ASolidAroundALampGetsThemAndOneBesideItDoesNot) {
     EXPECT_EQ(back_count(mesh), 6u);
 }
 
+// Upright, of an L in the box [0, 3] x [0, 3] x [0, 1]; fronts outside.
+Faces l_shaped_solid() {
+    const std::vector<glm::dvec2> outline = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+    Faces faces(2);
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+        const auto a = outline[k], b = outline[(k + 1) % outline.size()];
+        faces[0].push_back({a.x, a.y, 1});
+        faces[1].insert(faces[1].begin(), {a.x, a.y, 0});
+        faces.push_back({{a.x, a.y, 0}, {b.x, b.y, 0}, {b.x, b.y, 1}, {a.x, a.y, 1}});
+    }
+    return faces;
+}
+
+TEST(Backs, ManyLampsInASolidsNotchDoNotHideTheOneInside) {
+    for (const bool inside : {false, true}) {
+        Scene scene = empty_scene();
+        scene.materials.push_back({"lamp", {0.0}, {1.0}, false});
+        const auto lamp_at = [&](double x, double y) {
+            for (const auto& face : solid_box({x, y, 0.4}, {x + 0.1, y + 0.1, 0.6}))
+                add_face(scene, face, 1);
+        };
+        for (int i = 0; i < 30; ++i) lamp_at(1.2 + 0.05 * i, 2);
+        if (inside) lamp_at(0.4, 0.4);
+        for (const auto& face : l_shaped_solid()) add_face(scene, face);
+
+        const Mesh mesh = build_mesh(scene, {.patch_size = 10});
+
+        EXPECT_TRUE(mesh.parts.back().closed);
+        EXPECT_EQ(mesh.parts.back().holds_light, inside);
+    }
+}
+
 TEST(Backs, BlockGivesThemToClosedPartsToo) {
     EXPECT_EQ(back_count(mesh_of(kSolid, 10, Backfaces::block)), 6u);
 }

@@ -60,6 +60,12 @@ TEST_F(Quantum, OfGltfCountsPlacesThatAreFloats) {
     EXPECT_DOUBLE_EQ(of_gltf({{"translation", {at, 0, 0}}}), 0x1p-24 + at * 0x1p-24);
 }
 
+TEST_F(Quantum, OfDecimetresFarAwayIsThatOfWhatWasChosen) {
+    EXPECT_DOUBLE_EQ(of_obj("v 500000.0 4500000.0 100.0\nv 500001.0 4500000.0 100.3\n"
+                            "v 500000.0 4500001.0 100.0\n"),
+                     5e-4);
+}
+
 TEST_F(Quantum, OfView3dIsThatOfItsVertices) {
     const std::string surface = "S 1 1 2 3 0 0 0 0.5 one\nE\n";
     EXPECT_DOUBLE_EQ(
