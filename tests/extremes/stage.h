@@ -93,12 +93,7 @@ class Stage {
         pipeline_.clear_counts();
         pipeline_.set_shooter(static_cast<std::uint32_t>(patch));
         project_hemisphere(pipeline_);
-        std::vector<int> result;
-        for (const int owner : pipeline_.owners())
-            result.push_back(owner == pipeline_.escaped_owner()       ? reference::kEscaped
-                             : owner == pipeline_.escaped_owner() + 1 ? reference::kOutsideDisk
-                                                                      : owner);
-        return result;
+        return owners_in(pipeline_);
     }
 
     Agreement agreement_of(int patch) {

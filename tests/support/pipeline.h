@@ -44,6 +44,17 @@ inline glm::dvec3 grid_point(const std::int32_t* steps) {
     return double{kGridStep} * glm::dvec3(steps[0], steps[1], steps[2]);
 }
 
+/// Of the last hemisphere, in the reference's numbering: kEscaped for no patch, kOutsideDisk beyond
+/// the disk.
+inline std::vector<int> owners_in(ShotPipeline& pipeline) {
+    std::vector<int> result;
+    for (const int owner : pipeline.owners())
+        result.push_back(owner == pipeline.escaped_owner()       ? reference::kEscaped
+                         : owner == pipeline.escaped_owner() + 1 ? reference::kOutsideDisk
+                                                                 : owner);
+    return result;
+}
+
 /// A pipeline whose next shooter is `patch`, aimed and ready to be projected.
 class Aimed {
   public:
@@ -76,15 +87,7 @@ class Aimed {
         const auto vector = [](const float* v) { return glm::dvec3(v[0], v[1], v[2]); };
         return {grid_point(shot.origin), vector(shot.normal), vector(shot.u_axis)};
     }
-    /// In the reference's numbering: kEscaped for no patch, kOutsideDisk beyond the disk.
-    std::vector<int> owners() {
-        std::vector<int> result;
-        for (const int owner : pipeline_.owners())
-            result.push_back(owner == pipeline_.escaped_owner()       ? reference::kEscaped
-                             : owner == pipeline_.escaped_owner() + 1 ? reference::kOutsideDisk
-                                                                      : owner);
-        return result;
-    }
+    std::vector<int> owners() { return owners_in(pipeline_); }  ///< as owners_in()
 
   private:
     static PipelineSettings settings(PipelineSettings result, const Shape& shape,
