@@ -196,11 +196,7 @@ class Mesher {
         constexpr double kMostSlender = 1e4;
         std::size_t count = 0, first = 0;
         for (std::size_t i = 0; i < mesh_.patches.size(); ++i) {
-            const auto& c = mesh_.patches[i].corners;
-            double longest = 0;
-            for (int k = 0; k < 4; ++k)
-                longest = std::max(
-                    longest, glm::distance(mesh_.vertices[c[k]], mesh_.vertices[c[(k + 1) % 4]]));
+            const double longest = longest_edge(mesh_.patches[i].corners, mesh_.vertices);
             if (longest * longest < kMostSlender * mesh_.area(mesh_.patches[i])) continue;
             if (count++ == 0) first = i;
         }

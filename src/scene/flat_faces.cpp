@@ -27,14 +27,6 @@ double width_of(Outline outline, const Vertices& vertices) {
     return widest / glm::length(along);
 }
 
-double longest_edge(Outline outline, const Vertices& vertices) {
-    double longest = 0;
-    for (std::size_t i = 0; i < outline.size(); ++i)
-        longest = std::max(longest, glm::distance(vertices[outline[i]],
-                                                  vertices[outline[(i + 1) % outline.size()]]));
-    return longest;
-}
-
 // Against the plane through the mean corner, which halves the largest deviation of a warped quad.
 bool is_planar(Outline outline, const Vertices& vertices, const glm::dvec3& normal,
                double precision) {
@@ -163,6 +155,14 @@ glm::dvec3 area_vector(std::span<const std::uint32_t> outline, const Vertices& v
     for (std::size_t i = 1; i + 1 < outline.size(); ++i)
         twice += glm::cross(vertices[outline[i]] - base, vertices[outline[i + 1]] - base);
     return 0.5 * twice;
+}
+
+double longest_edge(std::span<const std::uint32_t> outline, const Vertices& vertices) {
+    double longest = 0;
+    for (std::size_t i = 0; i < outline.size(); ++i)
+        longest = std::max(longest, glm::distance(vertices[outline[i]],
+                                                  vertices[outline[(i + 1) % outline.size()]]));
+    return longest;
 }
 
 FlatFaces flatten(const Scene& scene, const Outlines& outlines, const Vertices& vertices,

@@ -44,4 +44,8 @@ FlatFaces flatten(const Scene& scene, const Outlines& outlines,
 glm::dvec3 area_vector(std::span<const std::uint32_t> outline,
                        const std::vector<glm::dvec3>& vertices);
 
+/// Length of the longest edge.
+double longest_edge(std::span<const std::uint32_t> outline,
+                    const std::vector<glm::dvec3>& vertices);
+
 }  // namespace hemirad::meshing
