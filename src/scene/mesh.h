@@ -21,6 +21,14 @@ struct Patch {
     bool is_triangle() const { return corners[3] == corners[2]; }
 };
 
+/// Patches that shoot as one: a patch of Cohen et al.'s two levels, whose elements they are. Planar
+/// and convex like them, and their union.
+struct Shooter {
+    std::array<std::uint32_t, 4> corners;  ///< as Patch::corners
+    std::uint32_t surface;
+    std::uint32_t first_patch, patch_count;
+};
+
 inline constexpr std::uint32_t kOwnPlane = 0xffffffffu;
 
 /// Coplanar, connected faces of one object and one material, cut into a regular grid.
@@ -75,6 +83,8 @@ struct InputFaults {
 struct Mesh {
     std::vector<glm::dvec3> vertices;  ///< world space, m; corners shared by neighbours are one
     std::vector<Patch> patches;
+    std::vector<Shooter>
+        shooters;  ///< in the order of their patches; empty: each shoots for itself
     std::vector<Surface> surfaces;
     std::vector<Material> materials;  ///< the scene's, reflectance limited, then one black absorber
     std::vector<Fragment> fragments;  ///< of fronts only, sorted by face, then patch
