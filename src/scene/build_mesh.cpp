@@ -46,7 +46,7 @@ class Mesher {
 
     Mesh run() {
         describe_scene();
-        check_patch_size();
+        check_sizes();
         flatten_faces();
         const auto edges = edges_of(faces_);
         parts_ = find_parts(scene_, faces_, edges, vertices_.positions(), precision_);
@@ -55,6 +55,7 @@ class Mesher {
                       : group_coplanar(scene_, faces_, edges, vertices_.positions(), precision_);
         add_fronts();
         add_backs();
+        forget_lone_shooters();
         combine_fragments();
         keep_used_vertices();
         number_planes(precision_, mesh_);
@@ -78,18 +79,25 @@ class Mesher {
         mesh_.materials.push_back({"back", black, black, false});
     }
 
-    void check_patch_size() {
-        constexpr double kLeastInPrecisions = 8;  // or vertices on neighbouring lines could weld
+    void check_sizes() {
         if (settings_.patch_size == 0) settings_.patch_size = default_patch_size(scene_);
-        if (!(settings_.patch_size > kLeastInPrecisions * precision_.plane))
-            throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
+        if (settings_.element_size == 0)
+            settings_.element_size = std::numeric_limits<double>::infinity();
+        check_size(settings_.patch_size, "patch", "patches");
+        check_size(settings_.element_size, "element", "elements");
+    }
+
+    void check_size(double size, const std::string& what, const std::string& plural) {
+        constexpr double kLeastInPrecisions = 8;  // or vertices on neighbouring lines could weld
+        if (!(size > kLeastInPrecisions * precision_.plane))
+            throw InputError(scene_.file + ": " + what + " size " + number(size) +
                              " m is not above the precision of the coordinates, " +
                              number(kLeastInPrecisions * precision_.plane) +
                              " m; where they are more precise, --weld says so");
         constexpr double kMostPatches = 1e8;  // some 20 GB
-        if (total_area(scene_) > kMostPatches * settings_.patch_size * settings_.patch_size)
-            throw InputError(scene_.file + ": patch size " + number(settings_.patch_size) +
-                             " m is too small: there would be more than 100 million patches");
+        if (total_area(scene_) > kMostPatches * size * size)
+            throw InputError(scene_.file + ": " + what + " size " + number(size) +
+                             " m is too small: there would be more than 100 million " + plural);
     }
 
     void flatten_faces() {
@@ -112,17 +120,19 @@ class Mesher {
         mesh_.warnings.insert(mesh_.warnings.end(), faces_.warnings.begin(), faces_.warnings.end());
     }
 
-    CutSurface cut(const Group& group, double patch_size) {
+    CutSurface cut(const Group& group, double patch_size, double element_size) {
         const auto merging = std::isinf(settings_.patch_size) ? Merging::none : Merging::in_cells;
-        Surface surface =
+        const Surface grid =
             lay_grid(scene_, faces_, group, vertices_.positions(), precision_, patch_size);
-        return cut_surface(faces_, group, std::move(surface), merging, precision_, vertices_);
+        return cut_surface(faces_, group,
+                           {grid, divide_cells(scene_, grid, precision_, element_size)}, merging,
+                           precision_, vertices_);
     }
 
     void add_fronts() {
         for (const Group& group : groups_) {
             const std::size_t index = mesh_.surfaces.size();
-            append(cut(group, settings_.patch_size), mesh_);
+            append(cut(group, settings_.patch_size, settings_.element_size), mesh_);
             if (mesh_.surfaces.size() > index) front_groups_.push_back(&group);
         }
     }
@@ -130,7 +140,7 @@ class Mesher {
     void add_backs() {
         for (std::uint32_t front = 0; front < front_groups_.size(); ++front) {
             const Group& group = *front_groups_[front];
-            const std::size_t before = mesh_.patches.size();
+            const std::size_t before = mesh_.shooters.size();
             switch (back_of(group)) {
                 case Back::none:
                     continue;
@@ -142,7 +152,7 @@ class Mesher {
                     break;
             }
             Part& part = parts_.parts[parts_.part_of_flat[group.front()]];
-            part.back_patches += static_cast<std::uint32_t>(mesh_.patches.size() - before);
+            part.back_patches += static_cast<std::uint32_t>(mesh_.shooters.size() - before);
         }
     }
 
@@ -160,7 +170,8 @@ class Mesher {
 
     // Nothing varies on a black back: one cell.
     CutSurface absorber_behind(const Group& group) {
-        CutSurface back = turn_over(cut(group, std::numeric_limits<double>::infinity()));
+        constexpr double kUncut = std::numeric_limits<double>::infinity();
+        CutSurface back = turn_over(cut(group, kUncut, kUncut));
         back.surface.material = static_cast<std::uint32_t>(mesh_.materials.size() - 1);
         back.surface.has_chart = false;
         return back;
@@ -169,7 +180,18 @@ class Mesher {
     CutSurface copy_of(std::uint32_t index) const {
         const Surface& surface = mesh_.surfaces[index];
         const auto first = mesh_.patches.begin() + surface.first_patch;
-        return {surface, {first, first + surface.patch_count}, {}};
+        CutSurface copy{surface, {first, first + surface.patch_count}, {}, {}};
+        const auto shooters =
+            std::ranges::equal_range(mesh_.shooters, index, {}, &Shooter::surface);
+        for (Shooter shooter : shooters) {
+            shooter.first_patch -= surface.first_patch;
+            copy.shooters.push_back(shooter);
+        }
+        return copy;
+    }
+
+    void forget_lone_shooters() {
+        if (mesh_.shooters.size() == mesh_.patches.size()) mesh_.shooters = {};
     }
 
     void look_for_overlaps() {
@@ -232,6 +254,8 @@ class Mesher {
         std::vector<std::uint32_t> new_index(all.size(), kUnused);
         for (const Patch& patch : mesh_.patches)
             for (const std::uint32_t v : patch.corners) new_index[v] = 0;
+        for (const Shooter& shooter : mesh_.shooters)
+            for (const std::uint32_t v : shooter.corners) new_index[v] = 0;
         for (std::uint32_t v = 0; v < all.size(); ++v) {
             if (new_index[v] == kUnused) continue;
             new_index[v] = static_cast<std::uint32_t>(mesh_.vertices.size());
@@ -239,6 +263,8 @@ class Mesher {
         }
         for (Patch& patch : mesh_.patches)
             for (std::uint32_t& v : patch.corners) v = new_index[v];
+        for (Shooter& shooter : mesh_.shooters)
+            for (std::uint32_t& v : shooter.corners) v = new_index[v];
     }
 
     const Scene& scene_;

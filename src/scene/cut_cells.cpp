@@ -30,9 +30,13 @@ class CellCutter {
           vertices_(vertices) {}
 
     void cut(std::uint32_t face, std::span<const std::uint32_t> piece) {
-        face_ = face;
         Polygon polygon;
         for (const std::uint32_t v : piece) polygon.push_back(corner(v));
+        cut(face, std::move(polygon));
+    }
+
+    void cut(std::uint32_t face, Polygon polygon) {
+        face_ = face;
         slice(std::move(polygon), 0, surface_.columns, [&](Polygon strip, std::uint32_t column) {
             slice(std::move(strip), 1, surface_.rows, [&](Polygon cell, std::uint32_t row) {
                 pieces_.push_back({row * surface_.columns + column, face_, std::move(cell)});
@@ -121,6 +125,14 @@ std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group
         const Flat& flat = faces.flats[index];
         for (const auto piece : faces.pieces(flat)) cutter.cut(flat.face, piece);
     }
+    return cutter.take();
+}
+
+std::vector<CellPiece> cut_into_cells(const Polygon& polygon, std::uint32_t face,
+                                      const Surface& surface, const Precision& precision,
+                                      VertexWelder& vertices) {
+    CellCutter cutter(surface, precision.plane, vertices);
+    cutter.cut(face, polygon);
     return cutter.take();
 }
 

@@ -28,4 +28,9 @@ std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group
                                       const Surface& surface, const Precision& precision,
                                       VertexWelder& vertices);
 
+/// The same of one convex polygon in the surface's plane; `face` is what its pieces say.
+std::vector<CellPiece> cut_into_cells(const Polygon& polygon, std::uint32_t face,
+                                      const Surface& surface, const Precision& precision,
+                                      VertexWelder& vertices);
+
 }  // namespace hemirad::meshing

@@ -1,6 +1,7 @@
 #include "scene/cut_surface.h"
 
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "scene/cut_cells.h"
@@ -12,37 +13,15 @@ namespace {
 
 using Cell = std::span<const CellPiece>;
 
-Patch patch_of(const Polygon& polygon) {
-    return {{polygon[0].vertex, polygon[1].vertex, polygon[2].vertex, polygon.back().vertex}, 0};
+using Corners = std::array<std::uint32_t, 4>;
+
+Corners corners_of(const Polygon& polygon) {
+    return {polygon[0].vertex, polygon[1].vertex, polygon[2].vertex, polygon.back().vertex};
 }
 
-// Shares a piece's area out to the patches that its merged polygon was cut into. Shares add up to
-// the whole piece, also where straight corners that were left out had moved the outline a little.
-void share_out(const CellPiece& piece, const std::vector<Polygon>& parts, std::uint32_t first_patch,
-               std::vector<Fragment>& fragments) {
-    std::vector<double> shares{1.0};
-    if (parts.size() > 1) {
-        shares.clear();
-        for (const Polygon& part : parts) shares.push_back(common_area(piece.polygon, part));
-    }
-    const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
-    if (total <= 0) return;
-    const double whole = area(piece.polygon);
-    for (std::uint32_t i = 0; i < parts.size(); ++i)
-        if (shares[i] > 0)
-            fragments.push_back({piece.face, first_patch + i, whole * shares[i] / total});
-}
-
-void add_patches(const MergedPiece& merged, Cell cell, double precision, CutSurface& cut) {
-    const auto parts = cut_into_quads(merged.polygon, precision);
-    const auto first_patch = static_cast<std::uint32_t>(cut.patches.size());
-    for (const Polygon& part : parts) {
-        cut.patches.push_back(patch_of(part));
-        cut.surface.cell_of_patch.push_back(cell.front().cell);
-    }
-    if (parts.empty()) return;
-    for (const std::uint32_t piece : merged.pieces)
-        share_out(cell[piece], parts, first_patch, cut.fragments);
+Corners turned_over(const Corners& corners) {
+    const auto [a, b, c, d] = corners;
+    return d == c ? Corners{a, c, b, b} : Corners{a, d, c, b};
 }
 
 std::vector<MergedPiece> unmerged(Cell cell, double precision) {
@@ -52,21 +31,96 @@ std::vector<MergedPiece> unmerged(Cell cell, double precision) {
     return pieces;
 }
 
+// Shares a piece's area out to the elements that its merged polygon was cut into. Shares add up to
+// the whole piece, also where straight corners that were left out had moved the outline a little.
+void share_out(const CellPiece& piece, std::span<const CellPiece> elements,
+               std::uint32_t first_patch, std::vector<Fragment>& fragments) {
+    std::vector<double> shares{1.0};
+    if (elements.size() > 1) {
+        shares.clear();
+        for (const CellPiece& element : elements)
+            shares.push_back(common_area(piece.polygon, element.polygon));
+    }
+    const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
+    if (total <= 0) return;
+    const double whole = area(piece.polygon);
+    for (std::uint32_t i = 0; i < elements.size(); ++i)
+        if (shares[i] > 0)
+            fragments.push_back({piece.face, first_patch + i, whole * shares[i] / total});
+}
+
+class SurfaceCutter {
+  public:
+    SurfaceCutter(Grids grids, const Precision& precision, VertexWelder& vertices)
+        : grid_(std::move(grids.patches)),
+          precision_(precision),
+          vertices_(vertices),
+          cut_{std::move(grids.elements), {}, {}, {}} {}
+
+    void cut(const FlatFaces& faces, const Group& group, Merging merging) {
+        const auto pieces = cut_into_cells(faces, group, grid_, precision_, vertices_);
+        for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
+            while (end < pieces.size() && pieces[end].cell == pieces[begin].cell) ++end;
+            const Cell cell(&pieces[begin], end - begin);
+            const auto polygons = merging == Merging::none ? unmerged(cell, precision_.plane)
+                                                           : merge_pieces(cell, precision_.plane);
+            for (const MergedPiece& merged : polygons)
+                if (merged.polygon.size() > 2) add(merged, cell);
+        }
+    }
+
+    CutSurface take() { return std::move(cut_); }
+
+  private:
+    void add(const MergedPiece& merged, Cell cell) {
+        const auto first_patch = static_cast<std::uint32_t>(cut_.patches.size());
+        std::vector<CellPiece> elements;
+        for (const Polygon& shooter : cut_into_quads(merged.polygon, precision_.plane))
+            for (CellPiece& element : add_shooter({cell.front().cell, 0, shooter}))
+                elements.push_back(std::move(element));
+        if (elements.empty()) return;
+        for (const std::uint32_t piece : merged.pieces)
+            share_out(cell[piece], elements, first_patch, cut_.fragments);
+    }
+
+    std::vector<CellPiece> add_shooter(const CellPiece& shooter) {
+        auto elements = elements_of(shooter);
+        if (elements.empty()) return {};
+        cut_.shooters.push_back({corners_of(shooter.polygon), 0,
+                                 static_cast<std::uint32_t>(cut_.patches.size()),
+                                 static_cast<std::uint32_t>(elements.size())});
+        for (const CellPiece& element : elements) {
+            cut_.patches.push_back({corners_of(element.polygon), 0});
+            cut_.surface.cell_of_patch.push_back(element.cell);
+        }
+        return elements;
+    }
+
+    std::vector<CellPiece> elements_of(const CellPiece& shooter) {
+        const Surface& fine = cut_.surface;
+        if (fine.columns == grid_.columns && fine.rows == grid_.rows) return {shooter};
+        std::vector<CellPiece> elements;
+        for (const CellPiece& piece :
+             cut_into_cells(shooter.polygon, shooter.face, fine, precision_, vertices_))
+            for (Polygon& quad : cut_into_quads(
+                     without_straight_corners(piece.polygon, precision_.plane), precision_.plane))
+                elements.push_back({piece.cell, piece.face, std::move(quad)});
+        return elements;
+    }
+
+    Surface grid_;
+    Precision precision_;
+    VertexWelder& vertices_;
+    CutSurface cut_;
+};
+
 }  // namespace
 
-CutSurface cut_surface(const FlatFaces& faces, const Group& group, Surface surface, Merging merging,
+CutSurface cut_surface(const FlatFaces& faces, const Group& group, Grids grids, Merging merging,
                        const Precision& precision, VertexWelder& vertices) {
-    CutSurface cut{std::move(surface), {}, {}};
-    const auto pieces = cut_into_cells(faces, group, cut.surface, precision, vertices);
-    for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
-        while (end < pieces.size() && pieces[end].cell == pieces[begin].cell) ++end;
-        const Cell cell(&pieces[begin], end - begin);
-        const auto polygons = merging == Merging::none ? unmerged(cell, precision.plane)
-                                                       : merge_pieces(cell, precision.plane);
-        for (const MergedPiece& merged : polygons)
-            if (merged.polygon.size() > 2) add_patches(merged, cell, precision.plane, cut);
-    }
-    return cut;
+    SurfaceCutter cutter(std::move(grids), precision, vertices);
+    cutter.cut(faces, group, merging);
+    return cutter.take();
 }
 
 CutSurface turn_over(CutSurface cut) {
@@ -79,10 +133,8 @@ CutSurface turn_over(CutSurface cut) {
         const std::uint32_t column = cell % surface.columns;
         cell += surface.columns - 1 - 2 * column;
     }
-    for (Patch& patch : cut.patches) {
-        const auto [a, b, c, d] = patch.corners;
-        patch.corners = patch.is_triangle() ? std::array{a, c, b, b} : std::array{a, d, c, b};
-    }
+    for (Patch& patch : cut.patches) patch.corners = turned_over(patch.corners);
+    for (Shooter& shooter : cut.shooters) shooter.corners = turned_over(shooter.corners);
     cut.fragments.clear();
     return cut;
 }
@@ -91,10 +143,11 @@ void append(CutSurface cut, Mesh& mesh) {
     if (cut.patches.empty()) return;
     cut.surface.first_patch = static_cast<std::uint32_t>(mesh.patches.size());
     cut.surface.patch_count = static_cast<std::uint32_t>(cut.patches.size());
-    for (Patch& patch : cut.patches) {
-        patch.surface = static_cast<std::uint32_t>(mesh.surfaces.size());
-        mesh.patches.push_back(patch);
-    }
+    const auto index = static_cast<std::uint32_t>(mesh.surfaces.size());
+    for (const Patch& patch : cut.patches) mesh.patches.push_back({patch.corners, index});
+    for (const auto& [corners, surface, first_patch, patch_count] : cut.shooters)
+        mesh.shooters.push_back(
+            {corners, index, cut.surface.first_patch + first_patch, patch_count});
     for (const auto& [face, patch, area] : cut.fragments)
         mesh.fragments.push_back({face, cut.surface.first_patch + patch, area});
     mesh.surfaces.push_back(std::move(cut.surface));

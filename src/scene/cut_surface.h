@@ -14,14 +14,22 @@ namespace hemirad::meshing {
 struct CutSurface {
     Surface surface;
     std::vector<Patch> patches;
+    std::vector<Shooter> shooters;
     std::vector<Fragment> fragments;
+};
+
+/// A surface's grid at both levels: every cell of `patches` is a whole number of cells of
+/// `elements` each way.
+struct Grids {
+    Surface patches, elements;
 };
 
 enum class Merging { in_cells, none };
 
-/// Fills the surface's grid with patches: quads where its faces fill a cell, triangles and quads
-/// where its outline runs through one.
-CutSurface cut_surface(const FlatFaces& faces, const Group& group, Surface surface, Merging merging,
+/// Fills the coarse grid with shooters: quads where the surface's faces fill a cell, triangles and
+/// quads where its outline runs through one. Then each shooter along the fine grid, likewise. The
+/// surface that comes back has the fine one.
+CutSurface cut_surface(const FlatFaces& faces, const Group& group, Grids grids, Merging merging,
                        const Precision& precision, VertexWelder& vertices);
 
 /// The same surface as seen from behind, mirrored left to right; without fragments.

@@ -91,11 +91,25 @@ double divisions(double side, double patch_size, double precision) {
     return std::max(1.0, std::ceil((side - precision) / patch_size));
 }
 
+struct CellCount {
+    double columns, rows;
+    const char *patch, *patches;  ///< what a cell holds
+    double size;                  ///< m, as asked for
+};
+
+// Cell numbers fit 32 bits.
+void check(const CellCount& cells, const Scene& scene, std::uint32_t object) {
+    constexpr double kMostCells = 1e8;  // some 20 GB of patches
+    if (cells.columns * cells.rows <= kMostCells) return;
+    throw InputError(scene.file + ": " + cells.patch + " size " + number(cells.size) +
+                     " m is too small: a surface of \"" + scene.objects[object] +
+                     "\" would have more than 100 million " + cells.patches);
+}
+
 }  // namespace
 
 Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
                  const Vertices& vertices, const Precision& precision, double patch_size) {
-    constexpr double kMostCells = 1e8;  // some 20 GB of patches; cell numbers fit 32 bits
     const Face& face = scene.faces[faces.flats[group.front()].face];
     const DirectedEdge base = longest(boundary_of(faces, group), vertices, precision.plane);
     const glm::dvec3& origin = vertices[base.from];
@@ -105,10 +119,7 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
     const glm::dvec2 size = high - low;
     const double columns = divisions(size.x, patch_size, precision.plane);
     const double rows = divisions(size.y, patch_size, precision.plane);
-    if (columns * rows > kMostCells)
-        throw InputError(scene.file + ": patch size " + number(patch_size) +
-                         " m is too small: a surface of \"" + scene.objects[face.object] +
-                         "\" would have more than 100 million patches");
+    check({columns, rows, "patch", "patches", patch_size}, scene, face.object);
     Surface surface;
     surface.object = face.object;
     surface.material = face.material;
@@ -119,6 +130,18 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
     surface.columns = static_cast<std::uint32_t>(columns);
     surface.rows = static_cast<std::uint32_t>(rows);
     surface.cell_size = size / glm::dvec2(columns, rows);
+    return surface;
+}
+
+Surface divide_cells(const Scene& scene, Surface surface, const Precision& precision,
+                     double element_size) {
+    const glm::dvec2 parts(divisions(surface.cell_size.x, element_size, precision.plane),
+                           divisions(surface.cell_size.y, element_size, precision.plane));
+    const double columns = parts.x * surface.columns, rows = parts.y * surface.rows;
+    check({columns, rows, "element", "elements", element_size}, scene, surface.object);
+    surface.columns = static_cast<std::uint32_t>(columns);
+    surface.rows = static_cast<std::uint32_t>(rows);
+    surface.cell_size /= parts;
     return surface;
 }
 

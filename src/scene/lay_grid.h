@@ -13,4 +13,9 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
                  const std::vector<glm::dvec3>& vertices, const Precision& precision,
                  double patch_size);
 
+/// The same surface with each of its cells divided evenly into cells of about `element_size`;
+/// infinity: not divided.
+Surface divide_cells(const Scene& scene, Surface surface, const Precision& precision,
+                     double element_size);
+
 }  // namespace hemirad::meshing

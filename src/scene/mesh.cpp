@@ -14,6 +14,10 @@ glm::dvec3 area_vector(const std::vector<glm::dvec3>& vertices, const Patch& pat
 
 }  // namespace
 
+std::size_t Mesh::shooter_count() const {
+    return shooters.empty() ? patches.size() : shooters.size();
+}
+
 double Mesh::area(const Patch& patch) const { return glm::length(area_vector(vertices, patch)); }
 
 glm::dvec3 Mesh::normal(const Patch& patch) const {

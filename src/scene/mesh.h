@@ -31,7 +31,8 @@ struct Shooter {
 
 inline constexpr std::uint32_t kOwnPlane = 0xffffffffu;
 
-/// Coplanar, connected faces of one object and one material, cut into a regular grid.
+/// Coplanar, connected faces of one object and one material, cut into a regular grid: of elements,
+/// where shooters have several.
 /// A point of the surface is origin + s * u_axis + t * v_axis with 0 <= s <= columns * cell_size.x
 /// and 0 <= t <= rows * cell_size.y; (u_axis, v_axis, normal) is orthonormal and right-handed.
 struct Surface {
@@ -83,8 +84,7 @@ struct InputFaults {
 struct Mesh {
     std::vector<glm::dvec3> vertices;  ///< world space, m; corners shared by neighbours are one
     std::vector<Patch> patches;
-    std::vector<Shooter>
-        shooters;  ///< in the order of their patches; empty: each shoots for itself
+    std::vector<Shooter> shooters;  ///< of all patches, in order; empty: each shoots for itself
     std::vector<Surface> surfaces;
     std::vector<Material> materials;  ///< the scene's, reflectance limited, then one black absorber
     std::vector<Fragment> fragments;  ///< of fronts only, sorted by face, then patch
@@ -98,6 +98,7 @@ struct Mesh {
     bool closed = false;  ///< every part is closed: no proxel can escape
     std::vector<std::string> warnings;
 
+    std::size_t shooter_count() const;
     double area(const Patch& patch) const;          ///< m^2
     glm::dvec3 normal(const Patch& patch) const;    ///< unit, towards the front
     glm::dvec3 centroid(const Patch& patch) const;  ///< of its area
@@ -107,6 +108,9 @@ enum class Backfaces { automatic, block, cull };
 
 struct MeshSettings {
     double patch_size = 0;  ///< m; 0: from the scene's extent; infinity: a patch a face, uncut
+    /// m; patches are cut into elements no longer than this, which then are Mesh::patches, and
+    /// shoot as one (Mesh::shooters). 0: a patch is its own only element.
+    double element_size = 0;
     Backfaces backfaces = Backfaces::automatic;
     double max_reflectance = 0.98;
     double weld = 0;  ///< m; vertices closer than this are one; 0: as precise as the scene is

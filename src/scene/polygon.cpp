@@ -41,6 +41,14 @@ Polygon left_of(const Polygon& polygon, const Corner& a, const Corner& b) {
     return kept;
 }
 
+bool apart(const Polygon& a, const Polygon& b, int axis) {
+    const auto along = [&](const Corner& corner) { return corner.at[axis]; };
+    return along(*std::ranges::max_element(a, {}, along)) <
+               along(*std::ranges::min_element(b, {}, along)) ||
+           along(*std::ranges::max_element(b, {}, along)) <
+               along(*std::ranges::min_element(a, {}, along));
+}
+
 std::vector<Polygon> fan_of_quads(const Polygon& polygon, std::size_t start) {
     const std::size_t n = polygon.size();
     const auto corner = [&](std::size_t i) { return polygon[(start + i) % n]; };
@@ -158,6 +166,7 @@ bool crosses_itself(const Polygon& polygon) {
 }
 
 double common_area(const Polygon& a, const Polygon& b) {
+    if (apart(a, b, 0) || apart(a, b, 1)) return 0;
     Polygon common = a;
     for (std::size_t i = 0; i < b.size() && common.size() > 2; ++i)
         common = left_of(common, b[i], b[(i + 1) % b.size()]);

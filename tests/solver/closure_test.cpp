@@ -42,6 +42,16 @@ TEST(Closure, NothingEscapesFromARotatedHall) {
     expect_nothing_escapes(meshed(scene, 0.41), 256, 17);
 }
 
+TEST(Closure, NothingEscapesBetweenElementsOfARotatedRoom) {
+    std::mt19937 random(3);
+    for (const double element_size : {0.19, 0.31}) {
+        const Scene scene = rotated(scene_named("lroom.obj"), random_rotation(random));
+        Mesh mesh = build_mesh(scene, {.patch_size = 0.7, .element_size = element_size});
+        mesh.shooters.clear();  // each looks for itself
+        expect_nothing_escapes(mesh, 256, 7);
+    }
+}
+
 TEST(Closure, IsExactForEveryShotOfAnOpenScene) {
     const Mesh mesh = meshed(scene_named("squares.obj"), 0.25);
     const auto device = mp1map::Device::open("");

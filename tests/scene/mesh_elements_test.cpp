@@ -1,0 +1,213 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <random>
+
+#include "errors.h"
+#include "scene/read_scene.h"
+#include "scene/scenes_by_hand.h"
+
+namespace hemirad {
+namespace {
+
+using Faces = std::vector<std::vector<glm::dvec3>>;
+
+Mesh two_levels(const Scene& scene, double patch_size, double element_size,
+                Backfaces backfaces = Backfaces::automatic) {
+    return build_mesh(
+        scene, {.patch_size = patch_size, .element_size = element_size, .backfaces = backfaces});
+}
+
+Scene scene_named(const std::string& name) {
+    return read_scene(std::filesystem::path(HEMI_SCENES) / name);
+}
+
+/// A concave floor, a triangle that shares its edge, and a wall of floats, all turned.
+Scene turned_pieces(unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> any;
+    const auto turn =
+        glm::normalize(glm::dquat(any(random), any(random), any(random), any(random)));
+    Scene scene = scene_of({{{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {2, 2, 0}, {1.1, 0.9, 0}, {0, 2, 0}},
+                            {{3, 0, 0}, {4.3, 1.1, 0}, {3, 2, 0}},
+                            {{0, 0, 0}, {0, 0, 1.7}, {3, 0, 1.7}, {3, 0, 0}}});
+    for (glm::dvec3& p : scene.positions) p = glm::dvec3(glm::vec3(turn * p));
+    return scene;
+}
+
+/// How far `p` lies outside the polygon of the shooter.
+double outside(const Mesh& mesh, const Shooter& shooter, const glm::dvec3& p) {
+    const Patch whole{shooter.corners, shooter.surface};
+    const auto corners = corners_of(mesh, whole);
+    double farthest = std::abs(glm::dot(p - corners[0], mesh.normal(whole)));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 along = corners[(i + 1) % corners.size()] - corners[i];
+        const glm::dvec3 out = glm::cross(along, mesh.normal(whole)) / glm::length(along);
+        farthest = std::max(farthest, glm::dot(p - corners[i], out));
+    }
+    return farthest;
+}
+
+/// Every shooter is the union of its elements, and these follow one another.
+void expect_nested(const Mesh& mesh) {
+    std::uint32_t next = 0;
+    for (const Shooter& shooter : mesh.shooters) {
+        ASSERT_EQ(shooter.first_patch, next);
+        ASSERT_GT(shooter.patch_count, 0u);
+        next += shooter.patch_count;
+        const Patch whole{shooter.corners, shooter.surface};
+        double area = 0;
+        for (std::uint32_t p = shooter.first_patch; p < next; ++p) {
+            const Patch& element = mesh.patches[p];
+            ASSERT_EQ(element.surface, shooter.surface);
+            EXPECT_NEAR(glm::dot(mesh.normal(element), mesh.normal(whole)), 1, 1e-9);
+            area += mesh.area(element);
+            for (const auto& corner : corners_of(mesh, element))
+                EXPECT_LT(outside(mesh, shooter, corner), 2 * mesh.weld);
+        }
+        const double length =
+            glm::distance(mesh.vertices[shooter.corners[0]], mesh.vertices[shooter.corners[2]]);
+        EXPECT_NEAR(area, mesh.area(whole), 8 * mesh.weld * length);
+    }
+    EXPECT_EQ(next, mesh.patches.size());
+}
+
+void expect_in_cells(const Mesh& mesh) {
+    for (const Surface& s : mesh.surfaces) {
+        ASSERT_EQ(s.cell_of_patch.size(), s.patch_count);
+        for (std::uint32_t i = 0; i < s.patch_count; ++i) {
+            const auto centre = mesh.centroid(mesh.patches[s.first_patch + i]) - s.origin;
+            const double column =
+                glm::dot(centre, s.u_axis) / s.cell_size.x - s.cell_of_patch[i] % s.columns;
+            const double row =
+                glm::dot(centre, s.v_axis) / s.cell_size.y - s.cell_of_patch[i] / s.columns;
+            EXPECT_TRUE(column > 0 && column < 1 && row > 0 && row < 1) << column << ' ' << row;
+        }
+    }
+}
+
+/// Every face's fragments are its area.
+void expect_whole_faces(const Scene& scene, const Mesh& mesh) {
+    std::map<std::uint32_t, double> areas;
+    for (const Fragment& fragment : mesh.fragments) areas[fragment.face] += fragment.area;
+    for (const auto& [face, area] : areas) {
+        const auto& corners = scene.faces[face].vertices;
+        glm::dvec3 doubled(0);
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            doubled += glm::cross(scene.positions[corners[i]],
+                                  scene.positions[corners[(i + 1) % corners.size()]]);
+        EXPECT_NEAR(area, glm::length(doubled) / 2, 1e-5 * area);
+    }
+}
+
+TEST(Elements, DivideEveryPatchEvenly) {
+    const Mesh mesh =
+        two_levels(scene_of(halves(rectangle(0, 0, 3, 2))), 0.5, 0.2, Backfaces::cull);
+
+    ASSERT_EQ(mesh.surfaces.size(), 1u);
+    EXPECT_EQ(mesh.surfaces[0].columns, 18u);
+    EXPECT_EQ(mesh.surfaces[0].rows, 12u);
+    EXPECT_EQ(mesh.shooters.size(), 24u);
+    EXPECT_EQ(mesh.patches.size(), 216u);
+    EXPECT_EQ(mesh.vertices.size(), 19u * 13u);
+    for (const Shooter& shooter : mesh.shooters) EXPECT_EQ(shooter.patch_count, 9u);
+    expect_nested(mesh);
+    expect_in_cells(mesh);
+}
+
+TEST(Elements, NestInPatchesOfAnyShape) {
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        const Scene scene = turned_pieces(seed);
+        const Mesh mesh = two_levels(scene, 0.7, 0.13, Backfaces::block);
+
+        EXPECT_GT(mesh.patches.size(), 5 * mesh.shooters.size());
+        expect_nested(mesh);
+        expect_in_cells(mesh);
+        expect_whole_faces(scene, mesh);
+    }
+}
+
+TEST(Elements, NestInPatchesOfEveryScene) {
+    for (const char* name :
+         {"cornell.gltf", "furnace.obj", "lroom.obj", "hall2k.obj", "squares.obj"})
+        for (const double parts : {1.7, 4.0}) {
+            const Scene scene = scene_named(name);
+            const double patch_size = default_patch_size(scene) * 2.3;
+            const Mesh mesh = two_levels(scene, patch_size, patch_size / parts);
+
+            SCOPED_TRACE(name);
+            expect_nested(mesh);
+            expect_in_cells(mesh);
+            expect_whole_faces(scene, mesh);
+        }
+}
+
+TEST(Elements, OfPatchesAreThePatchesThatOneLevelHas) {
+    const Scene scene = turned_pieces(3);
+    const Mesh one = mesh_of(scene, 0.5, Backfaces::block);
+    const Mesh two = two_levels(scene, 0.5, 0.1, Backfaces::block);
+
+    ASSERT_EQ(two.shooters.size(), one.patches.size());
+    for (std::size_t i = 0; i < one.patches.size(); ++i)
+        for (int k = 0; k < 4; ++k)
+            EXPECT_EQ(two.vertices[two.shooters[i].corners[k]],
+                      one.vertices[one.patches[i].corners[k]]);
+}
+
+TEST(Elements, AsLargeAsPatchesLeaveOneLevel) {
+    const Scene scene = turned_pieces(3);
+    const Mesh one = mesh_of(scene, 0.5);
+    const Mesh two = two_levels(scene, 0.5, 0.5, Backfaces::cull);
+
+    EXPECT_TRUE(two.shooters.empty());
+    EXPECT_EQ(two.shooter_count(), two.patches.size());
+    ASSERT_EQ(two.patches.size(), one.patches.size());
+    for (std::size_t i = 0; i < one.patches.size(); ++i)
+        EXPECT_EQ(two.patches[i].corners, one.patches[i].corners);
+}
+
+TEST(Elements, DividePolygonsThatAreNotCut) {
+    const Mesh mesh = two_levels(scene_of(room({0, 0, 0}, {2, 3, 1})), kUncut, 0.5);
+
+    EXPECT_EQ(mesh.shooters.size(), 6u);
+    EXPECT_EQ(mesh.patches.size(), 2u * (4 * 6 + 4 * 2 + 6 * 2));
+    expect_nested(mesh);
+    expect_in_cells(mesh);
+}
+
+TEST(Elements, OfBacksAreTheFrontsTurnedOver) {
+    Scene scene = scene_of({rectangle(0, 0, 1, 1)});
+    scene.materials[0].double_sided = true;
+
+    const Mesh mesh = two_levels(scene, 0.5, 0.25);
+
+    ASSERT_EQ(mesh.surfaces.size(), 2u);
+    EXPECT_EQ(mesh.shooters.size(), 8u);
+    EXPECT_EQ(mesh.parts[0].back_patches, 4u);
+    expect_nested(mesh);
+    expect_in_cells(mesh);
+    for (const Shooter& shooter : mesh.shooters)
+        EXPECT_EQ(mesh.normal({shooter.corners, 0}).z, shooter.surface == 0 ? 1 : -1);
+}
+
+TEST(Elements, AreNotForBlackBacks) {
+    const Mesh mesh = two_levels(scene_of({rectangle(0, 0, 1, 1)}), 0.5, 0.25);
+
+    ASSERT_EQ(mesh.surfaces.size(), 2u);
+    EXPECT_EQ(mesh.surfaces[1].patch_count, 1u);
+    EXPECT_EQ(mesh.shooters.size(), 5u);
+    EXPECT_EQ(mesh.shooters.back().patch_count, 1u);
+}
+
+TEST(Elements, TooSmallAreRefused) {
+    const Scene scene = scene_of({rectangle(0, 0, 1, 1)});
+
+    EXPECT_THROW(two_levels(scene, 0.5, 1e-9), InputError);
+    EXPECT_THROW(two_levels(scene, 0.5, 2e-5), InputError);
+}
+
+}  // namespace
+}  // namespace hemirad
