@@ -27,7 +27,15 @@ struct InfoOptions {
     std::uint32_t resolution = SolverSettings{}.resolution;
 };
 
-void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh, double patch_size) {
+// As options that give this mesh.
+std::string sizes_of(const MeshSettings& settings) {
+    const auto patches = "--patch-size " + number_text(settings.patch_size);
+    if (settings.element_size == 0) return patches;
+    return patches + ", --element-size " + number_text(settings.element_size);
+}
+
+void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh,
+                    const MeshSettings& settings) {
     const auto count = [&](auto matches) {
         return std::count_if(mesh.patches.begin(), mesh.patches.end(), matches);
     };
@@ -38,8 +46,9 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh, dou
         << "objects      " << scene.objects.size() << '\n'
         << "materials    " << scene.materials.size() << '\n'
         << "surfaces     " << mesh.surfaces.size() << '\n'
-        << "patches      " << mesh.patches.size() << " (" << triangles << " of them triangles), "
-        << "--patch-size " << number_text(patch_size) << '\n'
+        << "patches      " << mesh.shooter_count() << '\n'
+        << "elements     " << mesh.patches.size() << " (" << triangles << " of them triangles), "
+        << sizes_of(settings) << '\n'
         << "precision    " << mesh.weld
         << " m, closer vertices are one (--weld): " << mesh.input.welded << " welded, "
         << mesh.input.moved << " moved onto edges\n"
@@ -112,7 +121,7 @@ int print_info(InfoOptions options, std::ostream& out) {
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
     const auto mesh = build_mesh(scene, options.mesh);
     if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);
-    print_contents(out, scene, mesh, options.mesh.patch_size);
+    print_contents(out, scene, mesh, options.mesh);
     print_parts(out, mesh, options.mesh.backfaces);
     print_bands(out, mesh);
     print_memory(out, mesh, options.resolution);
@@ -130,6 +139,7 @@ void add_info(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<InfoOptions>();
     add_scene(*command, options->scene);
     add_mesh_options(*command, options->mesh);
+    add_element_size(*command, options->mesh);
     add_resolution(*command, options->resolution);
     command->callback(
         [&chosen, options] { chosen = [options] { return print_info(*options, std::cout); }; });

@@ -26,6 +26,14 @@ void add_mesh_options(CLI::App& command, MeshSettings& settings) {
               [&](const OptionValue& value) { settings.max_reflectance = fraction(value); });
 }
 
+void add_element_size(CLI::App& command, MeshSettings& settings) {
+    add_value(
+        command,
+        {"--element-size", "METRES",
+         "patches shoot as they are and receive on elements, of this longest edge [one each]"},
+        [&](const OptionValue& value) { settings.element_size = positive_number(value); });
+}
+
 std::string name_of(Backfaces backfaces) {
     return std::string(kBackfaces[static_cast<std::size_t>(backfaces)]);
 }

@@ -27,8 +27,7 @@ Json input_json(const InputFaults& input) {
 }
 
 Json scene_json(const Mesh& mesh) {
-    // A patch is its own only element until elements exist.
-    return {{"patches", mesh.patches.size()},
+    return {{"patches", mesh.shooter_count()},
             {"elements", mesh.patches.size()},
             {"bands", mesh.bands},
             {"closed", mesh.closed},

@@ -50,7 +50,8 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
         {"--sampling-error", "E", "closed forms where one hemisphere errs by more [by --quality]"},
         [&](const OptionValue& value) { solver.sampling_error = positive_number(value); });
     add_mesh_options(command, options.mesh);
-    add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch]"},
+    add_element_size(command, options.mesh);
+    add_value(command, {"--texel-size", "METRES", "edge of a texel [half an element]"},
               [&](const OptionValue& value) { options.texel_size = positive_number(value); });
 }
 
@@ -222,6 +223,8 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         {"--max-reflectance", number_text(options.mesh.max_reflectance)},
         {"--tolerance", number_text(solver.tolerance)},
         {"--quantity", name_of(options.quantity)}};
+    if (options.mesh.element_size > 0)
+        result.emplace_back("--element-size", number_text(options.mesh.element_size));
     if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (options.target_error)
         result.emplace_back("--target-error", number_text(*options.target_error));

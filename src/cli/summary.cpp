@@ -31,6 +31,12 @@ std::string ending(const SolveOptions& options, const Outcome& outcome) {
     return {};
 }
 
+std::string size_of(const Mesh& mesh) {
+    const auto patches = counted(mesh.shooter_count(), "patch", "patches");
+    if (mesh.shooters.empty()) return patches;
+    return patches + " in " + counted(mesh.patches.size(), "element");
+}
+
 void print_ledger(std::ostream& out, const Solution& solution) {
     print(out, "%-8s %12s %12s %12s %12s %10s\n", "band", "emitted W", "absorbed W", "escaped W",
           "unshot W", "residual");
@@ -64,8 +70,7 @@ void print_warnings(std::ostream& out, const std::vector<std::string>& warnings)
 
 void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh,
                 const mp1map::DeviceSummary& device, const mp1map::PeArray& array) {
-    out << printable(options.scene.filename().string()) << ": "
-        << counted(mesh.patches.size(), "patch", "patches") << " on "
+    out << printable(options.scene.filename().string()) << ": " << size_of(mesh) << " on "
         << counted(mesh.surfaces.size(), "surface") << ", " << (mesh.closed ? "closed" : "open")
         << '\n'
         << printable(device.name) << ": " << counted(device.compute_units, "compute unit") << ", "

@@ -414,6 +414,17 @@ class Report(CommandLine):
         self.assertEqual([], report["warnings"])
         self.assertIn("project_patches", report["seconds"]["per_stage"])
 
+    def test_counts_patches_and_their_elements(self):
+        counts = []
+        for sizes in ((), ("--element-size", "0.25"), ("--element-size", "0.1")):
+            self.assert_done(self.solve("--report", "r.json", "--backfaces", "cull", *sizes))
+            report = json.loads((self.folder / "r.json").read_text())
+            counts.append((report["scene"]["patches"], report["scene"]["elements"]))
+            self.assertEqual(float(sizes[1]) if sizes else None,
+                             report["settings"].get("element_size"))
+        patches = counts[0][0]
+        self.assertEqual([(patches, patches), (patches, patches), (patches, 9 * patches)], counts)
+
     def test_sums_up_the_files(self):
         self.assert_done(self.solve("--report", "r.json", "--preview", "p.png"))
         outputs = json.loads((self.folder / "r.json").read_text())["outputs"]
