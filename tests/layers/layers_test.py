@@ -17,7 +17,7 @@ NAMES = {
     r"CL/\w*cl\w*\.h": r"mp1map/opencl\.h",
     r"\bcl::|\bcl_\w+\b|\bCL_[A-Z]\w+": r"mp1map/.*",
     r"\bImf::|OpenEXR/": r"src/lightmap/[^/]*exr[^/]*|tools/exr_diff\.cpp|tests/.*exr.*",
-    r"embree3/|\brtc[A-Z]|\bRTC": r"src/reference/embree/.*",
+    r"embree3/|\brtc[A-Z]|\bRTC": r"src/reference/embree/.*|tools/packet_caster\.cpp",
     r"enqueueNDRangeKernel": r"mp1map/acu\.cpp",
 }
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "kernels/shared.h"
+#include "solver/patch_arrays.h"
+
+namespace hemirad {
+
+/// What a hemisphere sees, found by Embree on all cores: a ray through every proxel's centre. Backs
+/// hide as fronts do, which culling backs would make no cheaper: for shooters outside of solids.
+class PacketCaster {
+  public:
+    explicit PacketCaster(const PatchArrays& patches);
+    ~PacketCaster();
+
+    /// The disk's proxels by the patch that their rays meet, [patch]; `aimed` gives the
+    /// hemisphere's origin and axes. Valid until the next call.
+    std::span<const std::int32_t> count(const device::Shot& aimed, std::uint32_t resolution);
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace hemirad
