@@ -1,5 +1,6 @@
 // First level of the sums over all patches that close a shot's analytic form factors: of the
 // factors, and of the doubt about them. block_sums: [block][visible, doubtful].
+#include "progress.clh"
 #include "shared.h"
 #include "sixteen_sums.clh"
 
@@ -13,7 +14,7 @@ static float block_sum(const __global float* values, int block) {
 
 __kernel void add_up_factors(const __global Shot* shot, const __global float* factors, int stride,
                              __global float* block_sums) {
-    if (shot->status != kRunning || shot->part < shot->part_count) return;
+    if (!is_closing_row(shot)) return;
     const int pe = get_global_id(0), pe_count = get_global_size(0);
     for (int block = pe; block < stride / kReduceBlock; block += pe_count) {
         block_sums[2 * block] = block_sum(factors + kVisibleFactor * stride, block);

@@ -1,6 +1,7 @@
 // Sec. 1.5.2: the coordinate system of the source patch, its origin in the next of samples x
 // samples equal parts of it. A hemisphere at a patch's centre gives a point-to-area factor;
 // several on the patch approach the area-to-area factor.
+#include "progress.clh"
 #include "shared.h"
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -114,7 +115,7 @@ static void store_axis(float3 axis, __global float* to) {
 __kernel void aim_hemisphere(__global Shot* shot, const __global int* corners,
                              const __global float* normals, int stride,
                              const __global int* patch_samples) {
-    if (shot->status != kRunning) return;
+    if (!is_projecting(shot)) return;
     const int patch = shot->patch, samples = patch_samples[patch], part = shot->part;
     ++shot->part;
     shot->part_count = samples * samples;

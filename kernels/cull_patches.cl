@@ -1,6 +1,7 @@
 // Sec. 1.5.1: elimination of trivially invisible patches. Each PE tests the patches it manages,
 // pe * depth and on, and sorts its stack so that the visible ones lie on top, in their order.
 #include "patches.clh"
+#include "progress.clh"
 
 // Whether a corner at `squared` distance shows by its `height` that it lies before a plane.
 static int_v is_before(real_v height, real_v squared) {
@@ -32,7 +33,7 @@ __kernel void cull_patches(const __global Shot* shot, const __global int* corner
                            const __global float* normals, const __global int* planes,
                            int stride, int depth,
                            __global int* stack, __global int* stack_height) {
-    if (shot->status != kRunning) return;
+    if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
     const int end = min((pe + 1) * depth, stride);
     __global int* top = stack + pe * depth;

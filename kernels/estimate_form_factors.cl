@@ -5,6 +5,7 @@
 #include "patches.clh"
 #include "plane.clh"
 #include "point_to_polygon.clh"
+#include "progress.clh"
 
 // What lies a ten-thousandth before a patch does not hide it: neighbours in one plane differ by
 // rounding.
@@ -52,7 +53,7 @@ __kernel void estimate_form_factors(const __global Shot* shot, const __global in
                                     const __global int* stack, const __global int* stack_height,
                                     const __global int* owners, __global int* proxel_count,
                                     __global int* covered_count, __global float* factors) {
-    if (shot->status != kRunning) return;
+    if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
     const int height = stack_height[pe];
     int owned = 0;

@@ -1,12 +1,13 @@
 // Turns counts into the places where lists begin: exclusive prefix sum, in place, by one array.
 // More entries than `capacity` halt the shot; the host then enlarges the buffer and repeats it.
+#include "progress.clh"
 #include "shared.h"
 
 // PoCL 3.1 miscompiles a kernel whose work-items may leave before a barrier, so all of them stay.
 __kernel void prefix_sum(__global Shot* shot, __global int* values, int count, uint capacity) {
     __local uint sums[PREFIX_PES];
     const int pe = get_local_id(0);
-    const bool running = shot->status == kRunning;
+    const bool running = is_projecting(shot);
     const int share = running ? (count + PREFIX_PES - 1) / PREFIX_PES : 0;
     const int first = min(pe * share, count), end = min(first + share, count);
     uint sum = 0;

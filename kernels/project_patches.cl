@@ -7,6 +7,7 @@
 #include "evaluate.clh"
 #include "hemisphere.clh"
 #include "plane.clh"
+#include "progress.clh"
 #include "sum_form_factors.clh"
 
 #define PROJECTION_WORDS (sizeof(Projection) / sizeof(int))
@@ -104,7 +105,7 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
     Activity activity = no_activity();
     clear_plane(pe, escaped, tile_roots, depth, owner);
     // No work-item may leave before a barrier, see prefix_sum.cl: a halted shot has empty lists.
-    const bool running = shot->status == kRunning;
+    const bool running = is_projecting(shot);
     const int begin = running && tile != 0 ? list_end[tile * stack_count - 1] : 0;
     const int end = running ? list_end[(tile + 1) * stack_count - 1] : 0;
     for (int first = begin; first < end; first += BROADCAST_PATCHES) {

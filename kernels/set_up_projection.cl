@@ -2,6 +2,7 @@
 // frame, elliptic arcs (eq. 1.2), depth plane (app. A), bounding rectangle (app. B).
 #include "clip.clh"
 #include "patches.clh"
+#include "progress.clh"
 
 // How far the shooter lies in front of a patch's plane, by the corner that errs least. cull_patches
 // has shown it to be more than kGridMargin.
@@ -55,7 +56,7 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
                                 const __global float* normals, int stride, int depth,
                                 const __global int* stack, const __global int* stack_height,
                                 __global Projection* projections) {
-    if (shot->status != kRunning) return;
+    if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
     const int height = stack_height[pe];
     for (int level = 0; level < height; level += LANES) {

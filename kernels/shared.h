@@ -34,7 +34,7 @@ typedef uint uint32_t;
 // tells front from back. The normal, the corner and three roundings of their product: 5 e = 3e-7.
 #define kPlaneMargin 3.5e-7f
 
-// What update_radiosity and choose_shooter add up at a time. Fixed, so that sums of floats have
+// What update_unshot and choose_shooter add up at a time. Fixed, so that sums of floats have
 // one order whatever the PE array.
 #define kReduceBlock 64
 
@@ -66,6 +66,10 @@ typedef struct {
     uint32_t escaped_proxels;  // of the last shot
     // Analytic form factors of the last shot: what closes them, and what escapes.
     float factor_scale, residual_share, escaped_fraction;
+    // Where the shooter's row of form factors lies, or goes to, and whether it is there already.
+    int32_t row, row_known;
+    uint32_t rows_kept;
+    uint32_t repeated_shots;  // by known rows
 } Shot;
 
 // Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
@@ -79,11 +83,10 @@ typedef struct {
     uint32_t columns, rows;
 } Projection;
 
-// The most energetic patch of kReduceBlock patches, and the proxels they own in a shot.
+// The most energetic patch of kReduceBlock patches.
 typedef struct {
     float energy;  // unshot flux over the bands' weights
     int32_t patch;
-    uint32_t proxels;
 } BlockSummary;
 
 // Form factors in the making, [kind][patch], sums over the shooter's hemispheres: closed form times
@@ -97,8 +100,8 @@ typedef struct {
 #define kSpareCounts 3
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(BlockSummary) == 12);
-static_assert(sizeof(Shot) == 104);
+static_assert(sizeof(BlockSummary) == 8);
+static_assert(sizeof(Shot) == 120);
 static_assert(sizeof(Projection) == 72);
 }  // namespace hemirad::device
 #endif

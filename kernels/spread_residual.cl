@@ -2,6 +2,7 @@
 // fraction is in doubt, in proportion to F v (1 - v): least squares with these as weights. So a
 // patch that nothing hides keeps its closed form. Where the doubt is less than what lacks, all are
 // scaled alike. The outside is counted; its v is its own share of the disk.
+#include "progress.clh"
 #include "shared.h"
 
 __kernel void spread_residual(__global Shot* shot, const __global float* block_sums,
@@ -19,7 +20,7 @@ __kernel void spread_residual(__global Shot* shot, const __global float* block_s
     barrier(CLK_LOCAL_MEM_FENCE);
 
     // No work-item may leave before a barrier, see prefix_sum.cl.
-    if (pe == 0 && shot->status == kRunning && shot->part >= shot->part_count) {
+    if (pe == 0 && is_closing_row(shot)) {
         for (int other = 1; other < REDUCE_PES; ++other) {
             visible[0] += visible[other];
             doubtful[0] += doubtful[other];

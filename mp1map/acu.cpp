@@ -24,10 +24,15 @@ void Acu::fail(const std::string& name, const cl::Error& error) const {
                       (memory ? " (out of memory)" : ""));
 }
 
-cl::Buffer Acu::zeroed(std::size_t bytes) {
+cl::Buffer Acu::allocated(std::size_t bytes) {
     cl::Buffer buffer;
     guarded("allocation of " + std::to_string(bytes) + " bytes",
             [&] { buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes); });
+    return buffer;
+}
+
+cl::Buffer Acu::zeroed(std::size_t bytes) {
+    const cl::Buffer buffer = allocated(bytes);
     fill_zero(buffer, bytes);
     return buffer;
 }

@@ -36,6 +36,13 @@ class Acu {
         allocated_bytes_ += bytes;
         return Plural<T>(zeroed(bytes), size);
     }
+    /// The same, but of unknown bits: memory that is never written may never be taken.
+    template <class T>
+    Plural<T> unset_plural(std::size_t size) {
+        const std::size_t bytes = std::max<std::size_t>(size, 1) * sizeof(T);
+        allocated_bytes_ += bytes;
+        return Plural<T>(allocated(bytes), size);
+    }
     template <class T>
     Plural<T> plural(const std::vector<T>& values) {
         auto result = plural<T>(values.size());
@@ -91,6 +98,7 @@ class Acu {
         }
     }
     [[noreturn]] void fail(const std::string& name, const cl::Error& error) const;
+    cl::Buffer allocated(std::size_t bytes);
     cl::Buffer zeroed(std::size_t bytes);
     void fill_zero(const cl::Buffer& buffer, std::size_t bytes);
     void write(const cl::Buffer& buffer, const void* values, std::size_t bytes);

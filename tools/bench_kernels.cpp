@@ -50,7 +50,8 @@ std::map<std::string, double> bytes_by_kernel(const Work& work) {
     const double patch = 12 * work.corners + 12;    // corners and normal
     const double factors = work.analytic ? 12 : 0;  // visible, unblocked, doubtful
     const double covered = work.analytic ? count : 0;
-    const double radiosity = 3 * 8 + 4;  // received, rest, unshot: read, written; reflectance
+    const double received = 2 * 8, row = 4;  // received and rest are read and written
+    const double unshot = 8 + 4;             // read and written; reflectance
     return {
         {"cull_patches", work.patches * (patch + index) + work.projected * index},
         {"set_up_projection", work.projected * (index + patch + projection)},
@@ -64,8 +65,10 @@ std::map<std::string, double> bytes_by_kernel(const Work& work) {
         {"correct_near_pairs", work.near_pairs * (index + 4 + 2 * factors)},
         {"add_up_factors", work.patches * 8 + work.blocks * 8},
         {"spread_residual", work.blocks * 8},
-        {"update_radiosity", work.patches * (radiosity + (work.analytic ? 2 * factors : count)) +
-                                 work.blocks * (sizeof(device::BlockSummary) + 4)},
+        {"update_radiosity",
+         work.patches * (received + row + (work.analytic ? 2 * factors : count))},
+        {"update_unshot",
+         work.patches * (unshot + row) + work.blocks * (sizeof(device::BlockSummary) + 4)},
         {"choose_shooter", work.blocks * (sizeof(device::BlockSummary) + 4)},
     };
 }
@@ -85,6 +88,7 @@ std::map<std::string, double> items_by_kernel(const Work& work) {
             {"add_up_factors", work.patches},
             {"spread_residual", work.blocks},
             {"update_radiosity", work.patches},
+            {"update_unshot", work.patches},
             {"choose_shooter", work.blocks}};
 }
 

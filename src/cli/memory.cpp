@@ -8,12 +8,12 @@
 namespace hemirad {
 
 std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution, FormFactorMode mode,
-                           const mp1map::PeArray& array) {
+                           std::uint64_t row_bytes, const mp1map::PeArray& array) {
     const bool triangles_only = std::all_of(mesh.patches.begin(), mesh.patches.end(),
                                             [](const Patch& patch) { return patch.is_triangle(); });
     return estimated_device_bytes(static_cast<std::uint32_t>(mesh.patches.size()),
                                   triangles_only ? 3 : 4, plan_bands(mesh).solved.size(),
-                                  resolution, mode, array);
+                                  resolution, mode, row_bytes, array);
 }
 
 }  // namespace hemirad

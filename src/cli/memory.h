@@ -10,6 +10,6 @@ namespace hemirad {
 
 /// Bytes that solving a mesh will hold on the device.
 std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution, FormFactorMode mode,
-                           const mp1map::PeArray& array);
+                           std::uint64_t row_bytes, const mp1map::PeArray& array);
 
 }  // namespace hemirad

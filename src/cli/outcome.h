@@ -36,6 +36,7 @@ struct Outcome {
     Accuracy accuracy;  ///< that it was solved with
     std::optional<Error> error;
     Closure closure;
+    std::uint64_t repeated_shots = 0;
     Seconds seconds;
     mp1map::DeviceSummary device;
     mp1map::PeArray pe_array;

@@ -58,7 +58,8 @@ void require_memory(const Work& work, const SolveOptions& options,
     const auto resolution = options.target_error
                                 ? accuracy_at(first_step(*options.target_error)).resolution
                                 : options.solver.resolution;
-    const auto needed = device_bytes(work.mesh, resolution, options.solver.form_factor, array);
+    const auto needed = device_bytes(work.mesh, resolution, options.solver.form_factor,
+                                     usable_row_bytes(options.solver.row_bytes, device), array);
     if (needed <= device.global_memory) return;
     throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
                      " has " + bytes_text(device.global_memory) +
@@ -91,6 +92,7 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
     outcome.seconds.solve = solving.seconds();
     outcome.solution = solver.solution();
     outcome.closure = solver.closure();
+    outcome.repeated_shots = solver.repeated_shots();
     outcome.accuracy = {options.solver.resolution, options.solver.shooter_samples,
                         options.solver.sampling_error};
     outcome.seconds.build_kernels = solver.build_seconds();

@@ -36,6 +36,11 @@ std::uint64_t list_capacity(std::uint64_t stride) {
     return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
 }
 
+// Rows of form factors that so many bytes hold, 4 bytes a patch; at most one for each patch.
+std::uint32_t row_capacity(std::uint32_t patches, std::uint64_t stride, std::uint64_t row_bytes) {
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, row_bytes / (4 * stride)));
+}
+
 std::string definition(const char* name, std::uint64_t value) {
     return std::string(" -D") + name + "=" + std::to_string(value);
 }
@@ -113,7 +118,7 @@ std::vector<std::string> kernel_names(FormFactorMode mode) {
         for (const char* name :
              {"estimate_form_factors", "correct_near_pairs", "add_up_factors", "spread_residual"})
             names.emplace_back(name);
-    names.insert(names.end(), {"update_radiosity", "choose_shooter"});
+    names.insert(names.end(), {"update_radiosity", "update_unshot", "choose_shooter"});
     return names;
 }
 
@@ -145,7 +150,8 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution) {
 
 std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
                                      std::size_t bands, std::uint32_t resolution,
-                                     FormFactorMode mode, const mp1map::PeArray& array) {
+                                     FormFactorMode mode, std::uint64_t row_bytes,
+                                     const mp1map::PeArray& array) {
     const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
     const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
@@ -160,7 +166,9 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner
         stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
     const std::uint64_t analytic =
         mode == FormFactorMode::analytic ? stride * 4 * (kFactorKinds + 2) + plane : 0;
-    return geometry + radiosity + projection + lists + plane + reduction + analytic;
+    const std::uint64_t rows =
+        4 * ((row_capacity(patches, stride, row_bytes) + 1) * (stride + 1) + stride);
+    return geometry + radiosity + projection + lists + plane + reduction + analytic + rows;
 }
 
 ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
@@ -173,6 +181,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       tile_count_(count_tiles(resolution_, array_)),
       stack_count_(array_.array_count * array_.pe_count()),
       depth_(stack_depth(stride_, stack_count_)),
+      row_capacity_(row_capacity(patches.patch_count, stride_, settings.row_bytes)),
       disk_proxels_(disk_proxel_count(resolution_)),
       mode_(settings.form_factor),
       tolerance_(static_cast<float>(settings.tolerance)),
@@ -204,6 +213,10 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     band_weight_ = acu_.plural(light.band_weight);
     shot_flux_ = acu_.plural<float>(band_count_);
     escaped_ = acu_.plural<float>(2 * band_count_);
+    // One row more, for shots whose row is not kept.
+    rows_ = acu_.unset_plural<float>((std::size_t{row_capacity_} + 1) * stride_);
+    row_escaped_ = acu_.plural<float>(row_capacity_ + 1);
+    row_of_ = acu_.plural<std::int32_t>(stride_);
     summaries_ = acu_.plural<device::BlockSummary>(stride_ / kReduceBlock);
     block_unshot_ = acu_.plural<float>(stride_ / kReduceBlock * band_count_);
 }
@@ -307,14 +320,21 @@ void ShotPipeline::spread_residual() {
 
 void ShotPipeline::update_radiosity() {
     acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), received_,
-               received_rest_, unshot_, reflectance_, band_weight_, summaries_, block_unshot_);
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, received_,
+               received_rest_);
+}
+
+void ShotPipeline::update_unshot() {
+    acu_.issue(kernel("update_unshot"), stack_grid(), shot_, shot_flux_, rows_,
+               std::int32_t(stride_), unshot_, reflectance_, band_weight_, summaries_,
+               block_unshot_);
 }
 
 void ShotPipeline::choose_shooter() {
     acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
                std::int32_t(summaries_.size()), unshot_, std::int32_t(stride_), band_weight_,
-               tolerance_, std::int32_t(disk_proxels_), proxel_count_, escaped_, shot_flux_);
+               tolerance_, std::int32_t(disk_proxels_), proxel_count_, escaped_, shot_flux_,
+               std::int32_t(row_capacity_), row_of_, row_escaped_);
 }
 
 device::Shot ShotPipeline::shot() { return acu_.unload(shot_).front(); }
@@ -328,6 +348,8 @@ void ShotPipeline::set_shooter(std::uint32_t patch, std::uint32_t part) {
     next.patch = static_cast<std::int32_t>(patch);
     next.part = part;
     next.status = kRunning;
+    next.row = static_cast<std::int32_t>(row_capacity_);
+    next.row_known = 0;
     set_shot(next);
 }
 

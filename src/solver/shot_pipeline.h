@@ -44,6 +44,7 @@ struct PipelineSettings {
     FormFactorMode form_factor = FormFactorMode::count;
     NearPairs near_pairs;  ///< for FormFactorMode::analytic; may be empty
     double tolerance = 1e-3;
+    std::uint64_t row_bytes = 0;  ///< for rows of form factors, which spare a shooter's next shots
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;
     bool timed = false;
@@ -87,6 +88,7 @@ class ShotPipeline {
     void add_up_factors();
     void spread_residual();
     void update_radiosity();
+    void update_unshot();
     void choose_shooter();
 
     /// Waits; how far the device has come.
@@ -138,7 +140,7 @@ class ShotPipeline {
 
     std::uint32_t resolution_, stride_;
     std::size_t band_count_;
-    std::uint32_t tile_count_, stack_count_, depth_;
+    std::uint32_t tile_count_, stack_count_, depth_, row_capacity_;
     std::uint64_t disk_proxels_;
     FormFactorMode mode_;
     float tolerance_;
@@ -155,6 +157,8 @@ class ShotPipeline {
     mp1map::Plural<float> near_factor_, factors_, factor_block_sums_;
     mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
+    mp1map::Plural<std::int32_t> row_of_;  // [patch] its row + 1; 0: it has none
+    mp1map::Plural<float> rows_, row_escaped_;
     mp1map::Plural<std::uint32_t> activity_;
     mp1map::Plural<device::BlockSummary> summaries_;
 };
@@ -168,6 +172,7 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution);
 /// Bytes a pipeline holds on the device; near pairs, 8 bytes each, come on top.
 std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
                                      std::size_t bands, std::uint32_t resolution,
-                                     FormFactorMode mode, const mp1map::PeArray& array);
+                                     FormFactorMode mode, std::uint64_t row_bytes,
+                                     const mp1map::PeArray& array);
 
 }  // namespace hemirad

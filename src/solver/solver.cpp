@@ -9,6 +9,8 @@ namespace {
 // The host looks at the device's progress about this often; shots in between need no round trip.
 constexpr double kSecondsBetweenLooks = 0.1;
 constexpr std::uint64_t kMostPassesBetweenLooks = 4096;
+// Shots by known rows between two passes that would project; beyond, these cost little.
+constexpr std::uint64_t kMostRepeats = 64;
 // The device counts them in 32 bits.
 constexpr std::uint64_t kMostShots = std::numeric_limits<std::uint32_t>::max();
 
@@ -48,12 +50,14 @@ void set_shooter_sampling(PipelineSettings& pipeline, const Mesh& mesh,
             shooter_samples_for(mesh, settings.sampling_error, kMostAutomaticSamples);
 }
 
-PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& settings) {
+PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& settings,
+                                   const mp1map::DeviceSummary& device) {
     PipelineSettings result;
     result.resolution = settings.resolution;
     result.form_factor = settings.form_factor;
     set_shooter_sampling(result, mesh, settings);
     result.tolerance = settings.tolerance;
+    result.row_bytes = usable_row_bytes(settings.row_bytes, device);
     result.pe_array = settings.pe_array;
     result.variants = settings.variants;
     result.kernels_dir = settings.kernels_dir;
@@ -65,10 +69,14 @@ ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSe
                           const mp1map::Device& device) {
     const PatchArrays patches = patch_arrays(mesh);
     return ShotPipeline(patches, patch_light(mesh, plan, patches.stride),
-                        pipeline_settings(mesh, settings), device);
+                        pipeline_settings(mesh, settings, device.summary()), device);
 }
 
 }  // namespace
+
+std::uint64_t usable_row_bytes(std::uint64_t wanted, const mp1map::DeviceSummary& device) {
+    return std::min({wanted, device.global_memory / 4, device.max_allocation});
+}
 
 ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& settings,
                                      const mp1map::Device& device)
@@ -78,8 +86,7 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
       pipeline_(pipeline_for(mesh, plan_, settings, device)) {
     pipeline_.init_plane();
     // A shot at nothing: adds up the emitted flux and finds the first shooter.
-    pipeline_.update_radiosity();
-    pipeline_.choose_shooter();
+    distribute_flux(pipeline_);
 }
 
 // The inner loops of sec. 1.5.4, over the levels of the stacks and their patches, run inside the
@@ -112,17 +119,29 @@ void close_form_factors(ShotPipeline& pipeline) {
     pipeline.spread_residual();
 }
 
-void shoot(ShotPipeline& pipeline) {
-    project_hemisphere(pipeline);
-    if (pipeline.mode() == FormFactorMode::analytic) close_form_factors(pipeline);
+void distribute_flux(ShotPipeline& pipeline) {
     pipeline.update_radiosity();
+    pipeline.update_unshot();
     pipeline.choose_shooter();
 }
 
-// Fewer where the device finds that it is done: the rest then do nothing.
-Progress ProgressiveSolver::advance(std::uint64_t hemispheres) {
-    for (std::uint64_t i = 0; i < hemispheres; ++i) shoot(pipeline_);
+void shoot(ShotPipeline& pipeline) {
+    project_hemisphere(pipeline);
+    if (pipeline.mode() == FormFactorMode::analytic) close_form_factors(pipeline);
+    distribute_flux(pipeline);
+}
+
+// What the device finds nothing to do for does nothing: passes once it is done, repeats for a
+// shooter whose row is not known. Twice as many repeats as the passes before met follow each.
+Progress ProgressiveSolver::advance(std::uint64_t passes) {
+    const std::uint64_t repeated_before = pipeline_.shot().repeated_shots;
+    for (std::uint64_t pass = 0; pass < passes; ++pass) {
+        shoot(pipeline_);
+        for (std::uint64_t repeat = 0; repeat < repeats_; ++repeat) distribute_flux(pipeline_);
+    }
     device::Shot state = pipeline_.shot();
+    const std::uint64_t repeated = state.repeated_shots - repeated_before;
+    repeats_ = std::min(kMostRepeats, (2 * repeated + passes - 1) / passes);
     if (state.status == kBinsFull) {
         pipeline_.enlarge_lists();
         state = pipeline_.shot();
@@ -197,6 +216,8 @@ Closure ProgressiveSolver::closure() {
     const double disk = static_cast<double>(pipeline_.disk_proxels());
     return {1 + state.least_surplus / disk, 1 + state.most_surplus / disk};
 }
+
+std::uint64_t ProgressiveSolver::repeated_shots() { return pipeline_.shot().repeated_shots; }
 
 const mp1map::PeArray& ProgressiveSolver::pe_array() const { return pipeline_.pe_array(); }
 

@@ -32,11 +32,17 @@ struct SolverSettings {
     /// Calls back whenever the shots reach a multiple of this, besides a few times a second; 0:
     /// not.
     std::uint64_t stop_every = 0;
+    /// For rows of form factors, see usable_row_bytes(): a shooter whose row is kept need not look
+    /// again.
+    std::uint64_t row_bytes = std::uint64_t{1} << 30;
     mp1map::PeArrayRequest pe_array = {};
     Variants variants = {};
     std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
     bool timed = false;                                     ///< keep the seconds of each kernel
 };
+
+/// What a device can spare of the bytes asked for: up to a quarter of its memory.
+std::uint64_t usable_row_bytes(std::uint64_t wanted, const mp1map::DeviceSummary& device);
 
 struct Progress {
     std::uint64_t shots = 0;
@@ -53,6 +59,10 @@ void project_shooter(ShotPipeline& pipeline, std::uint32_t patch);
 
 /// FormFactorMode::analytic: the shooter's factors from all its hemispheres add up to 1.
 void close_form_factors(ShotPipeline& pipeline);
+
+/// The shooter's flux goes by the row of form factors that its hemispheres have counted, or that is
+/// known of it; and who shoots next.
+void distribute_flux(ShotPipeline& pipeline);
 
 /// One pass of the loop of sec. 1.5.4: one hemisphere of the shooter that the pipeline has chosen
 /// and, if it was the last one, what it shoots and who shoots next.
@@ -80,6 +90,7 @@ class ProgressiveSolver {
 
     Solution solution();
     Closure closure();
+    std::uint64_t repeated_shots();  ///< of all, by known rows
     const mp1map::PeArray& pe_array() const;
     std::uint64_t device_bytes() const;  ///< memory held on the device
     double build_seconds() const;        ///< that the kernels took to compile
@@ -87,13 +98,14 @@ class ProgressiveSolver {
     std::map<std::string, std::pair<double, std::uint64_t>> kernel_seconds();
 
   private:
-    Progress advance(std::uint64_t hemispheres);
+    Progress advance(std::uint64_t passes);
     std::uint64_t next_pause(std::uint64_t shots) const;
 
     const Mesh& mesh_;
     SolverSettings settings_;
     BandPlan plan_;
     ShotPipeline pipeline_;
+    std::uint64_t repeats_ = 0;  // shots by known rows that are sent off with each pass
 };
 
 }  // namespace hemirad

@@ -21,13 +21,16 @@ struct Books {
     std::vector<float> unshot;        // [band][patch]
     std::vector<float> weight, flux;  // [band]
     std::vector<float> escaped;       // [sum, rest][band]
-    std::int32_t escaped_count = 0;
+    std::int32_t escaped_count = 0, owned_count = 0;
+    std::int32_t row_capacity = 0;
+    std::vector<std::int32_t> row_of;  // [patch]
+    std::vector<float> row_escaped;    // [row]
     float tolerance = 1e-3f;
 
     std::size_t stride() const { return summaries.size() * kReduceBlock; }
 };
 
-// `blocks` of which each has 10 proxels and its most energetic patch in the middle.
+// `blocks` of which each has its most energetic patch in the middle.
 Books random_books(std::size_t blocks, std::size_t bands) {
     std::mt19937 random(70);
     std::uniform_real_distribution<float> unit(0, 1);
@@ -42,7 +45,7 @@ Books random_books(std::size_t blocks, std::size_t bands) {
     books.shot.most_surplus = std::numeric_limits<std::int32_t>::min();
     for (std::size_t block = 0; block < blocks; ++block) {
         books.summaries.push_back(
-            {unit(random), static_cast<std::int32_t>(block * kReduceBlock + 32), 10});
+            {unit(random), static_cast<std::int32_t>(block * kReduceBlock + 32)});
         for (std::size_t band = 0; band < bands; ++band) books.block_unshot.push_back(unit(random));
     }
     for (std::size_t i = 0; i < bands * books.stride(); ++i) books.unshot.push_back(unit(random));
@@ -51,6 +54,8 @@ Books random_books(std::size_t blocks, std::size_t bands) {
         books.flux.push_back(unit(random));
     }
     books.escaped.assign(2 * bands, 0.0f);
+    books.row_of.assign(books.stride(), 0);
+    books.row_escaped.assign(8, 0.0f);
     return books;
 }
 
@@ -67,16 +72,22 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         std::vector<std::int32_t> counts(books.stride() + kSpareCounts, 0);
         counts[books.stride()] = books.escaped_count;
         counts[books.stride() + 1] = 5;  // outside the disk
+        counts[books.stride() + 2] = books.owned_count;
         auto proxel_count = run.plural(counts);
         auto escaped = run.plural(books.escaped), flux = run.plural(books.flux);
+        auto row_of = run.plural(books.row_of);
+        auto row_escaped = run.plural(books.row_escaped);
         run.issue({1, GetParam()}, shot, run.plural(books.summaries),
                   run.plural(books.block_unshot), std::int32_t(books.summaries.size()),
                   run.plural(books.unshot), std::int32_t(books.stride()), run.plural(books.weight),
-                  books.tolerance, kDiskProxels, proxel_count, escaped, flux);
+                  books.tolerance, kDiskProxels, proxel_count, escaped, flux, books.row_capacity,
+                  row_of, row_escaped);
         Books result = books;
         result.shot = run.acu().unload(shot).front();
         result.escaped = run.acu().unload(escaped);
         result.flux = run.acu().unload(flux);
+        result.row_of = run.acu().unload(row_of);
+        result.row_escaped = run.acu().unload(row_escaped);
         counts_ = run.acu().unload(proxel_count);
         return result;
     }
@@ -134,10 +145,12 @@ TEST_P(ChooseShooter, TheBooksOfTheShotAreClosed) {
     auto books = random_books(30, 2);
     books.escaped = {0.5f, 0.25f, 0, 0};
     books.escaped_count = 40;
+    books.owned_count = 300;
 
     const auto after = closed(books);
 
     EXPECT_EQ(after.shot.shots, 42u);
+    EXPECT_EQ(after.shot.repeated_shots, 0u);
     EXPECT_EQ(after.shot.escaped_proxels, 40u);
     EXPECT_EQ(after.shot.least_surplus, 340 - 1000);
     EXPECT_EQ(after.shot.most_surplus, 340 - 1000);
@@ -150,6 +163,77 @@ TEST_P(ChooseShooter, TheBooksOfTheShotAreClosed) {
     }
     EXPECT_EQ(counts_[books.stride()], 0);
     EXPECT_EQ(counts_[books.stride() + 1], 0);
+    EXPECT_EQ(counts_[books.stride() + 2], 0);
+}
+
+TEST_P(ChooseShooter, RowsAreKeptWhileThereIsRoom) {
+    auto books = random_books(30, 1);
+    books.row_capacity = 3;
+    books.shot.row = 2;
+    books.shot.rows_kept = 2;
+    books.escaped_count = 40;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.row_of[books.shot.patch], 3);
+    EXPECT_EQ(after.row_escaped[2], 40.0f / (kDiskProxels * kParts));
+    EXPECT_EQ(after.shot.rows_kept, 3u);
+    EXPECT_EQ(after.shot.row, 3);
+    EXPECT_FALSE(after.shot.row_known);
+}
+
+TEST_P(ChooseShooter, ARowBeyondThoseIsForgotten) {
+    auto books = random_books(30, 1);
+    books.row_capacity = 3;
+    books.shot.row = 3;
+    books.shot.rows_kept = 3;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.row_of, books.row_of);
+    EXPECT_EQ(after.shot.rows_kept, 3u);
+    EXPECT_EQ(after.shot.row, 3);
+}
+
+TEST_P(ChooseShooter, AShooterWhoseRowIsKnownNeedsNoHemisphere) {
+    auto books = random_books(1, 1);
+    books.row_capacity = 3;
+    books.shot.row = 1;
+    books.shot.rows_kept = 1;
+    books.row_of[32] = 1;
+
+    const auto after = closed(books);
+
+    EXPECT_TRUE(after.shot.row_known);
+    EXPECT_EQ(after.shot.row, 0);
+    EXPECT_GE(after.shot.part, after.shot.part_count);
+}
+
+TEST_P(ChooseShooter, AShooterWhoseRowIsNotKnownHasHemispheresToMake) {
+    auto books = random_books(1, 1);
+    books.shot.part = books.shot.part_count = 0;
+
+    const auto after = closed(books);
+
+    EXPECT_FALSE(after.shot.row_known);
+    EXPECT_LT(after.shot.part, after.shot.part_count);
+}
+
+TEST_P(ChooseShooter, AKnownRowBringsItsShareOfEscapesAndNoProxels) {
+    auto books = random_books(30, 2);
+    books.shot.row_known = 1;
+    books.shot.row = 1;
+    books.row_escaped[1] = 0.25f;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.shots, 42u);
+    EXPECT_EQ(after.shot.repeated_shots, 1u);
+    EXPECT_EQ(after.shot.least_surplus, books.shot.least_surplus);
+    EXPECT_EQ(after.shot.most_surplus, books.shot.most_surplus);
+    EXPECT_EQ(after.row_of, books.row_of);
+    for (std::size_t band = 0; band < 2; ++band)
+        EXPECT_EQ(after.escaped[band], 0.25f * books.flux[band]);
 }
 
 TEST_P(ChooseShooter, BeforeTheFirstShotThereAreNoBooksToClose) {

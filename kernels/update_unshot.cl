@@ -1,0 +1,46 @@
+// Sec. 1.5.4: what the shot's flux leaves to be shot. The shooter has none left but what it sent to
+// itself. Each PE then reduces the unshot flux of its blocks, the first level of the choice of the
+// most energetic patch.
+// unshot, reflectance: [band][patch]; flux in normalised units. block_unshot: [block][band].
+#include "lanes.clh"
+#include "progress.clh"
+#include "shared.h"
+#include "sixteen_sums.clh"
+
+__kernel void update_unshot(const __global Shot* shot, const __global float* shot_flux,
+                            const __global float* rows, int stride, __global float* unshot,
+                            const __global float* reflectance, const __global float* band_weight,
+                            __global BlockSummary* summaries, __global float* block_unshot) {
+    if (!is_shooting(shot)) return;
+    const __global float* row = rows + (size_t)shot->row * stride;
+    for (int block = get_global_id(0); block < stride / kReduceBlock;
+         block += get_global_size(0)) {
+        BlockSummary summary = {-1.0f, 0};
+        real_v sums[BANDS][ACCUMULATORS];
+        for (int band = 0; band < BANDS; ++band)
+            for (int a = 0; a < ACCUMULATORS; ++a) sums[band][a] = (real_v)0.0f;
+        for (int step = 0; step < kReduceBlock / LANES; ++step) {
+            const int patch = block * kReduceBlock + step * LANES;
+            const int_v is_shooter = (patch + LANE_INDEX) == shot->patch ? (int_v)-1 : (int_v)0;
+            const real_v form_factor = load_v(patch, row);
+            real_v energy = (real_v)0.0f;
+            for (int band = 0; band < BANDS; ++band) {
+                const int at = band * stride + patch;
+                const real_v kept = choose_v(is_shooter, (real_v)0.0f, load_v(at, unshot));
+                const real_v left =
+                    fma(load_v(at, reflectance), form_factor * shot_flux[band], kept);
+                *real_vectors(unshot + at) = left;
+                energy = fma((real_v)band_weight[band], left, energy);
+                sums[band][step % ACCUMULATORS] += left;
+            }
+            for (int lane = 0; lane < LANES; ++lane)
+                if (lane_of(energy, lane) > summary.energy) {
+                    summary.energy = lane_of(energy, lane);
+                    summary.patch = patch + lane;
+                }
+        }
+        summaries[block] = summary;
+        for (int band = 0; band < BANDS; ++band)
+            block_unshot[block * BANDS + band] = total_of(sums[band]);
+    }
+}

@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "support/kernel_run.h"
+#include "support/pipeline.h"
+
+namespace hemirad::test {
+namespace {
+
+constexpr std::uint32_t kStride = 4 * kReduceBlock;
+constexpr std::int32_t kRow = 1, kShooter = 77;
+constexpr std::size_t kSums = 16;  // of a block, so that lanes do not change their order
+
+struct State {
+    std::size_t bands = 1;
+    std::vector<float> shot_flux, weight;    // [band]
+    std::vector<float> unshot, reflectance;  // [band][patch]
+    std::vector<float> rows;                 // [row][patch]
+    std::int32_t shooter = kShooter, status = kRunning;
+    std::uint32_t part = 4;
+};
+
+struct Outcome {
+    std::vector<float> unshot;
+    std::vector<device::BlockSummary> summaries;
+    std::vector<float> block_unshot;  // [block][band]
+};
+
+State random_state(std::size_t bands) {
+    std::mt19937 random(61);
+    std::uniform_real_distribution<float> unit(0, 1);
+    State state;
+    state.bands = bands;
+    for (std::size_t band = 0; band < bands; ++band) {
+        state.shot_flux.push_back(unit(random));
+        state.weight.push_back(band == 1 ? 0.0f : unit(random));
+    }
+    for (std::size_t i = 0; i < bands * kStride; ++i) {
+        state.unshot.push_back(unit(random));
+        state.reflectance.push_back(unit(random));
+    }
+    for (std::uint32_t i = 0; i < (kRow + 1) * kStride; ++i) state.rows.push_back(unit(random));
+    return state;
+}
+
+// The reflected part of what the row brings goes to what is unshot, of which the shooter has none.
+std::vector<float> expected_unshot(const State& state) {
+    auto unshot = state.unshot;
+    for (std::size_t band = 0; band < state.bands; ++band)
+        for (std::size_t patch = 0; patch < kStride; ++patch) {
+            const std::size_t at = band * kStride + patch;
+            const float flux = state.rows[kRow * kStride + patch] * state.shot_flux[band];
+            const bool is_shooter = static_cast<std::int32_t>(patch) == state.shooter;
+            unshot[at] = std::fma(state.reflectance[at], flux, is_shooter ? 0.0f : unshot[at]);
+        }
+    return unshot;
+}
+
+device::BlockSummary summary_of(const State& state, const std::vector<float>& unshot,
+                                std::size_t first) {
+    device::BlockSummary summary{-1, 0};
+    for (std::size_t patch = first; patch < first + kReduceBlock; ++patch) {
+        float energy = 0;
+        for (std::size_t band = 0; band < state.bands; ++band)
+            energy = std::fma(state.weight[band], unshot[band * kStride + patch], energy);
+        if (energy > summary.energy) summary = {energy, static_cast<std::int32_t>(patch)};
+    }
+    return summary;
+}
+
+float sum_of(const std::vector<float>& unshot, std::size_t band, std::size_t first) {
+    std::array<float, kSums> sums{};
+    for (std::size_t k = 0; k < kReduceBlock; ++k)
+        sums[k % kSums] += unshot[band * kStride + first + k];
+    float total = 0;
+    for (const float sum : sums) total += sum;
+    return total;
+}
+
+Outcome expected_outcome(const State& state) {
+    Outcome outcome{expected_unshot(state), {}, {}};
+    for (std::size_t first = 0; first < kStride; first += kReduceBlock) {
+        outcome.summaries.push_back(summary_of(state, outcome.unshot, first));
+        for (std::size_t band = 0; band < state.bands; ++band)
+            outcome.block_unshot.push_back(sum_of(outcome.unshot, band, first));
+    }
+    return outcome;
+}
+
+Outcome updated(const State& state, const Shape& shape) {
+    KernelOptions options;
+    options.lanes = shape.lanes;
+    options.bands = static_cast<std::uint32_t>(state.bands);
+    KernelRun run("update_unshot", options);
+    device::Shot shot{};
+    shot.patch = state.shooter;
+    shot.status = state.status;
+    shot.part = state.part;
+    shot.part_count = 4;
+    shot.row = kRow;
+    auto unshot = run.plural(state.unshot);
+    auto summaries = run.acu().plural<device::BlockSummary>(kStride / kReduceBlock);
+    auto block_unshot = run.acu().plural<float>(kStride / kReduceBlock * state.bands);
+    run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
+              run.plural(state.shot_flux), run.plural(state.rows), std::int32_t(kStride), unshot,
+              run.plural(state.reflectance), run.plural(state.weight), summaries, block_unshot);
+    return {run.acu().unload(unshot), run.acu().unload(summaries), run.acu().unload(block_unshot)};
+}
+
+void expect_equal(const Outcome& outcome, const Outcome& expected) {
+    EXPECT_EQ(bits(outcome.unshot), bits(expected.unshot));
+    EXPECT_EQ(bits(outcome.block_unshot), bits(expected.block_unshot));
+    ASSERT_EQ(outcome.summaries.size(), expected.summaries.size());
+    for (std::size_t block = 0; block < outcome.summaries.size(); ++block) {
+        EXPECT_EQ(outcome.summaries[block].energy, expected.summaries[block].energy);
+        EXPECT_EQ(outcome.summaries[block].patch, expected.summaries[block].patch);
+    }
+}
+
+class UpdateUnshot : public testing::TestWithParam<Shape> {};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, UpdateUnshot, testing::ValuesIn(shapes()),
+                         [](const auto& shape) { return name_of(shape.param); });
+
+TEST_P(UpdateUnshot, AGreyShotHasTheBitsOfTheScalarComputation) {
+    const auto state = random_state(1);
+
+    expect_equal(updated(state, GetParam()), expected_outcome(state));
+}
+
+TEST_P(UpdateUnshot, AShotOfThreeBandsHasTheBitsOfTheScalarComputation) {
+    const auto state = random_state(3);
+
+    expect_equal(updated(state, GetParam()), expected_outcome(state));
+}
+
+TEST_P(UpdateUnshot, EquallyEnergeticPatchesLeaveTheChoiceToTheLowest) {
+    auto state = random_state(1);
+    state.shooter = -1;
+    state.weight = {1};
+    state.rows.assign(state.rows.size(), 0.0f);
+    state.unshot.assign(kStride, 0.25f);
+    state.unshot[70] = state.unshot[75] = state.unshot[127] = 0.5f;
+
+    const auto summaries = updated(state, GetParam()).summaries;
+
+    const std::vector<std::int32_t> chosen = {0, 70, 128, 192};
+    for (std::size_t block = 0; block < chosen.size(); ++block)
+        EXPECT_EQ(summaries[block].patch, chosen[block]);
+}
+
+TEST_P(UpdateUnshot, TheShooterKeepsOnlyWhatItSendsToItself) {
+    auto state = random_state(1);
+    state.rows[kRow * kStride + kShooter] = 0;
+
+    EXPECT_EQ(updated(state, GetParam()).unshot[kShooter], 0.0f);
+}
+
+TEST_P(UpdateUnshot, AHaltedShotChangesNothing) {
+    auto state = random_state(1);
+    state.status = kBinsFull;
+
+    EXPECT_EQ(bits(updated(state, GetParam()).unshot), bits(state.unshot));
+}
+
+TEST_P(UpdateUnshot, NothingChangesBeforeTheShootersLastHemisphere) {
+    auto state = random_state(1);
+    state.part = 3;
+
+    EXPECT_EQ(bits(updated(state, GetParam()).unshot), bits(state.unshot));
+}
+
+}  // namespace
+}  // namespace hemirad::test

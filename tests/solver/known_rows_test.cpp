@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include "solver/support.h"
+
+// A shooter's row of form factors is kept, and its later shots go by it.
+namespace hemirad::test {
+namespace {
+
+constexpr std::uint64_t kAnyBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kLeastEntries = 65536;  // of the lists
+
+struct Solved {
+    Solution solution;
+    Closure closure;
+    std::uint64_t repeated_shots;
+};
+
+Solved solved(const Mesh& mesh, SolverSettings how, std::uint64_t row_bytes) {
+    how.row_bytes = row_bytes;
+    const auto device = mp1map::Device::open("");
+    ProgressiveSolver solver(mesh, how, device);
+    EXPECT_EQ(solver.solve(go_on), Stop::converged);
+    return {solver.solution(), solver.closure(), solver.repeated_shots()};
+}
+
+// Each fills the view of the square; only the lowest is seen.
+std::vector<Polygon> square_under_ceilings(int ceilings) {
+    std::vector<Polygon> polygons{square({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)};
+    for (int i = 0; i < ceilings; ++i)
+        polygons.push_back(square({0, 0, 0.1 + 0.001 * i}, {0, 1, 0}, {1, 0, 0}, 9));
+    return polygons;
+}
+
+std::uint64_t list_entries(const Mesh& mesh, const SolverSettings& how) {
+    Shooters shooters(mesh, how.resolution, 1, how.pe_array);
+    shooters.proxel_counts(0);
+    return shooters.pipeline().shot().bin_entries;
+}
+
+void expect_equal(const Solved& a, const Solved& b) {
+    EXPECT_EQ(a.solution.shots, b.solution.shots);
+    EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
+    EXPECT_EQ(a.solution.unshot_fraction, b.solution.unshot_fraction);
+    EXPECT_EQ(a.closure.least, b.closure.least);
+    EXPECT_EQ(a.closure.most, b.closure.most);
+    for (std::size_t band = 0; band < a.solution.ledger.size(); ++band) {
+        EXPECT_EQ(a.solution.ledger[band].escaped, b.solution.ledger[band].escaped);
+        EXPECT_EQ(a.solution.ledger[band].unshot, b.solution.ledger[band].unshot);
+    }
+}
+
+class KnownRows : public testing::TestWithParam<FormFactorMode> {
+  protected:
+    SolverSettings how() const {
+        auto result = settings(64);
+        result.form_factor = GetParam();
+        result.shooter_samples = 2;
+        return result;
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Modes, KnownRows,
+                         testing::Values(FormFactorMode::count, FormFactorMode::analytic),
+                         [](const auto& mode) {
+                             return mode.param == FormFactorMode::count ? "count" : "analytic";
+                         });
+
+TEST_P(KnownRows, GiveTheBitsOfLookingAgain) {
+    // Light escapes from it, so that the books of escapes are shown as well.
+    const Mesh mesh = meshed(scene_named("cornell.gltf"), 0.2);
+    const std::uint64_t row = 4 * patch_arrays(mesh).stride;
+
+    const auto none = solved(mesh, how(), 0);
+    const auto some = solved(mesh, how(), 20 * row);
+    const auto all = solved(mesh, how(), mesh.patches.size() * row);
+
+    EXPECT_GT(none.solution.ledger[0].escaped, 0);
+    EXPECT_EQ(none.repeated_shots, 0u);
+    EXPECT_GT(some.repeated_shots, 0u);
+    EXPECT_GE(all.repeated_shots, all.solution.shots - mesh.patches.size());
+    EXPECT_GT(all.repeated_shots, some.repeated_shots);
+    expect_equal(some, none);
+    expect_equal(all, none);
+}
+
+TEST_P(KnownRows, AreThoseAfterTheListsWereEnlarged) {
+    const Mesh mesh = mesh_of(square_under_ceilings(40), 0.7);
+    auto how = this->how();
+    how.resolution = 256;
+    how.tolerance = 1e-5;
+    how.pe_array = {4, 1, 16, 64, 64};
+    const auto room = solved(mesh, how, 0);
+    how.pe_array = {1, 1, 4, 4, 4};
+
+    const auto enlarged = solved(mesh, how, kAnyBytes);
+
+    ASSERT_GT(list_entries(mesh, how), kLeastEntries);
+    EXPECT_GT(enlarged.repeated_shots, 0u);
+    expect_equal(enlarged, room);
+}
+
+TEST_P(KnownRows, GoOnOverPauses) {
+    const Mesh mesh = meshed(scene_named("cornell.gltf"), 0.2);
+    auto how = this->how();
+    const auto whole = solved(mesh, how, kAnyBytes);
+    how.stop_every = 7;
+
+    expect_equal(solved(mesh, how, kAnyBytes), whole);
+}
+
+}  // namespace
+}  // namespace hemirad::test
