@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <limits>
 #include <span>
@@ -36,16 +37,24 @@ struct Options {
 struct Comparison {
     std::uint32_t resolution = 0;
     std::size_t shooters = 0;
-    double embree_ms = 0, hemirad_ms = 0, ratio = 0;      // medians; of Embree's time to ours
+    double embree_ms = 0, hemirad_ms = 0;                 // medians
+    double ratio = 0, processor_ratio = 0;                // medians of Embree's time over ours
     double mean_disagreement = 0, most_disagreement = 0;  // of the disk's proxels
 };
 
+// Wall time, and what all threads spent on processors, which others' work delays less.
+struct Duration {
+    double wall_ms, processor_ms;
+};
+
 template <class Work>
-double milliseconds(const Work& work) {
+Duration time_of(const Work& work) {
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t before = std::clock();
     work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-        .count();
+    const std::clock_t after = std::clock();
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+    return {wall.count(), 1e3 * static_cast<double>(after - before) / CLOCKS_PER_SEC};
 }
 
 double median(std::vector<double> values) {
@@ -117,20 +126,24 @@ std::vector<Aimed> aim(const PatchArrays& patches, ShotPipeline& pipeline, Packe
 
 void compare_times(const std::vector<Aimed>& aimed, ShotPipeline& pipeline, PacketCaster& caster,
                    const Options& options, Comparison& result) {
-    std::vector<double> embree, ours, ratios;
+    std::vector<double> embree, ours, ratios, processor_ratios;
     for (std::uint32_t round = 0; round < options.rounds; ++round)
         for (const Aimed& shooter : aimed) {
-            ours.push_back(milliseconds([&] {
+            const Duration our = time_of([&] {
                 pipeline.set_shooter(shooter.patch);
                 shoot(pipeline);
                 pipeline.shot();
-            }));
-            embree.push_back(milliseconds([&] { caster.count(shooter.shot, result.resolution); }));
-            ratios.push_back(embree.back() / ours.back());
+            });
+            const Duration their = time_of([&] { caster.count(shooter.shot, result.resolution); });
+            ours.push_back(our.wall_ms);
+            embree.push_back(their.wall_ms);
+            ratios.push_back(their.wall_ms / our.wall_ms);
+            processor_ratios.push_back(their.processor_ms / our.processor_ms);
         }
     result.embree_ms = median(embree);
     result.hemirad_ms = median(ours);
     result.ratio = median(ratios);
+    result.processor_ratio = median(processor_ratios);
 }
 
 Comparison compare(const PatchArrays& patches, PacketCaster& caster, std::uint32_t resolution,
@@ -169,9 +182,10 @@ Options parse(int argc, char** argv) {
 
 void print(const Comparison& row) {
     std::printf(
-        "%4u^2 %5zu shooters  Embree %8.3f ms  hemirad %8.3f ms  ratio %6.2f  counts differ "
+        "%4u^2 %5zu shooters  Embree %8.3f ms  hemirad %8.3f ms  ratio %6.2f, of "
+        "processors' time %6.2f  counts differ "
         "%.2g, at most %.2g of the disk\n",
-        row.resolution, row.shooters, row.embree_ms, row.hemirad_ms, row.ratio,
+        row.resolution, row.shooters, row.embree_ms, row.hemirad_ms, row.ratio, row.processor_ratio,
         row.mean_disagreement, row.most_disagreement);
     std::fflush(stdout);
 }
@@ -179,12 +193,13 @@ void print(const Comparison& row) {
 void write_csv(const std::string& path, std::uint32_t patches,
                const std::vector<Comparison>& table) {
     std::ofstream file(path);
-    file << "patches,resolution,shooters,embree_ms,hemirad_ms,ratio,mean_disagreement,"
+    file << "patches,resolution,shooters,embree_ms,hemirad_ms,ratio,processor_ratio,mean_"
+            "disagreement,"
             "most_disagreement\n";
     for (const Comparison& row : table)
         file << patches << ',' << row.resolution << ',' << row.shooters << ',' << row.embree_ms
-             << ',' << row.hemirad_ms << ',' << row.ratio << ',' << row.mean_disagreement << ','
-             << row.most_disagreement << '\n';
+             << ',' << row.hemirad_ms << ',' << row.ratio << ',' << row.processor_ratio << ','
+             << row.mean_disagreement << ',' << row.most_disagreement << '\n';
     if (!file.flush()) throw OutputError(path + ": cannot be written");
 }
 
