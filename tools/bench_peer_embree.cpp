@@ -167,7 +167,9 @@ Options parse(int argc, char** argv) {
     Options options;
     CLI::App app("Times shots against rays of the same directions, cast by Embree");
     app.add_option("room", options.scene, "OBJ or glTF file; every polygon is a patch")->required();
-    app.add_option("--resolution", options.resolutions, "N,N,...: N x N proxels")->delimiter(',');
+    app.add_option("--resolution", options.resolutions, "N,N,...: N x N proxels")
+        ->check(CLI::Range(16, 8192))
+        ->delimiter(',');
     app.add_option("--shooters", options.shooters, "spread evenly over the patches")
         ->check(CLI::PositiveNumber);
     app.add_option("--rounds", options.rounds, "over all shooters")->check(CLI::PositiveNumber);
