@@ -113,29 +113,30 @@ static void store_axis(float3 axis, __global float* to) {
 }
 
 __kernel void aim_hemisphere(__global Shot* shot, const __global int* corners,
-                             const __global float* normals, int stride,
-                             const __global int* patch_samples) {
+                             const __global float* normals, const __global int* planes,
+                             int stride, const __global int* shooter_samples) {
     if (!is_projecting(shot)) return;
-    const int patch = shot->patch, samples = patch_samples[patch], part = shot->part;
+    const int shooter = shot->shooter, samples = shooter_samples[shooter], part = shot->part;
     ++shot->part;
     shot->part_count = samples * samples;
     int3 steps[4];
     float3 corner[4];  // from the first one: as exact as the patch is small
     for (int k = 0; k < 4; ++k) {
-        steps[k] = corner_of(corners, stride, patch, min(k, CORNERS - 1));
+        steps[k] = corner_of(corners, stride, shooter, min(k, CORNERS - 1));
         corner[k] = kGridStep * convert_float3(steps[k] - steps[0]);
     }
     const bool triangle = all(steps[3] == steps[2]);
     const int3 origin = on_grid(steps, triangle ? triangle_sample(part, samples)
                                                 : quad_sample(corner, part, samples));
+    shot->plane = planes[shooter];
     shot->origin[0] = origin.x;
     shot->origin[1] = origin.y;
     shot->origin[2] = origin.z;
 
     const float3 normal =
-        (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
+        (float3)(normals[shooter], normals[stride + shooter], normals[2 * stride + shooter]);
     const float3 along = frame_axis(proper_edge(corner), normal);
-    const float angle = disk_angle(patch, part);
+    const float angle = disk_angle(shooter, part);
     const float3 u_axis = cos(angle) * along + sin(angle) * cross(normal, along);
     store_axis(u_axis, shot->u_axis);
     store_axis(cross(normal, u_axis), shot->v_axis);

@@ -1,4 +1,4 @@
-// Sec. 1.5.4: the most energetic patch of all, from those of the blocks; ties go to the lowest.
+// Sec. 1.5.4: the most energetic shooter of all, from those of the blocks; ties go to the lowest.
 // Closes the books of the shot that was just made: shots, escaped flux, closure, convergence.
 #include "progress.clh"
 #include "shared.h"
@@ -35,7 +35,7 @@ static void keep_row(__global Shot* shot, int row_capacity, __global int* row_of
                      __global float* row_escaped) {
     row_escaped[shot->row] = shot->escaped_fraction;
     if (shot->row == row_capacity) return;
-    row_of[shot->patch] = shot->row + 1;
+    row_of[shot->shooter] = shot->row + 1;
     ++shot->rows_kept;
 }
 
@@ -48,28 +48,28 @@ static void close_books(__global Shot* shot, const __global float* shot_flux,
     shot->repeated_shots += shot->row_known;
 }
 
-// The more energetic of two, the lower patch of equals. Adds the rest up.
+// The more energetic of two, the lower of equals. Adds the rest up.
 static void merge(__local BlockSummary* into, __local float* left, BlockSummary other,
                   const __local float* other_left) {
     if (other.energy > into->energy ||
-        (other.energy == into->energy && other.patch < into->patch)) {
+        (other.energy == into->energy && other.shooter < into->shooter)) {
         into->energy = other.energy;
-        into->patch = other.patch;
+        into->shooter = other.shooter;
     }
     for (int band = 0; band < BANDS; ++band) left[band] += other_left[band];
 }
 
 // Fluxes are parts of what a band emits; band_weight is 0 for a dark band, else 1.
 static void aim_at(__global Shot* shot, BlockSummary best, const __local float* left,
-                   const __global float* unshot, int stride, const __global float* band_weight,
-                   float tolerance, __global float* shot_flux) {
+                   const __global float* unshot, int shooter_stride,
+                   const __global float* band_weight, float tolerance, __global float* shot_flux) {
     float unshot_fraction = 0.0f;
     for (int band = 0; band < BANDS; ++band) {
         unshot_fraction = max(unshot_fraction, left[band] * band_weight[band]);
-        shot_flux[band] = unshot[band * stride + best.patch];
+        shot_flux[band] = unshot[band * shooter_stride + best.shooter];
     }
     shot->unshot_fraction = unshot_fraction;
-    shot->patch = best.patch;
+    shot->shooter = best.shooter;
     if (shot->shots >= shot->shot_limit) shot->status = kPaused;
     if (unshot_fraction < tolerance) shot->status = kConverged;
     // A part of the flux that is no normal float: reflections would round it up again, for ever.
@@ -79,7 +79,7 @@ static void aim_at(__global Shot* shot, BlockSummary best, const __local float* 
 // A known row makes the shot without further hemispheres; a row that is not kept goes behind those
 // that are.
 static void find_row(__global Shot* shot, const __global int* row_of, int row_capacity) {
-    const int known = row_of[shot->patch];
+    const int known = row_of[shot->shooter];
     shot->row_known = known > 0;
     shot->row = known > 0 ? known - 1 : min((int)shot->rows_kept, row_capacity);
     shot->part = shot->row_known;
@@ -88,9 +88,9 @@ static void find_row(__global Shot* shot, const __global int* row_of, int row_ca
 
 __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* summaries,
                              const __global float* block_unshot, int block_count,
-                             const __global float* unshot, int stride,
+                             const __global float* unshot, int shooter_stride,
                              const __global float* band_weight, float tolerance, int disk_proxels,
-                             __global int* proxel_count, __global float* escaped,
+                             __global int* proxel_count, int stride, __global float* escaped,
                              __global float* shot_flux, int row_capacity, __global int* row_of,
                              __global float* row_escaped) {
     __local BlockSummary summary[REDUCE_PES];
@@ -111,14 +111,14 @@ __kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* s
     if (pe == 0 && is_shooting(shot)) {
         for (int other = 1; other < REDUCE_PES; ++other)
             merge(summary, left, summary[other], left + other * BANDS);
-        if (shot->patch >= 0) {
+        if (shot->shooter >= 0) {
             if (!shot->row_known) {
                 close_counts(shot, proxel_count + stride, disk_proxels);
                 keep_row(shot, row_capacity, row_of, row_escaped);
             }
             close_books(shot, shot_flux, row_escaped, escaped);
         }
-        aim_at(shot, summary[0], left, unshot, stride, band_weight, tolerance, shot_flux);
+        aim_at(shot, summary[0], left, unshot, shooter_stride, band_weight, tolerance, shot_flux);
         find_row(shot, row_of, row_capacity);
     }
 }

@@ -8,8 +8,8 @@ __kernel void correct_near_pairs(const __global Shot* shot, const __global int* 
                                  const __global int* near_patch, const __global float* near_factor,
                                  int stride, __global float* factors) {
     if (!is_closing_row(shot)) return;
-    const int end = near_begin[shot->patch + 1];
-    for (int k = near_begin[shot->patch] + get_global_id(0); k < end; k += get_global_size(0)) {
+    const int end = near_begin[shot->shooter + 1];
+    for (int k = near_begin[shot->shooter] + get_global_id(0); k < end; k += get_global_size(0)) {
         __global float* of_patch = factors + near_patch[k];
         const float unblocked = of_patch[kUnblockedFactor * stride];
         if (!(unblocked > 0.0f)) continue;

@@ -24,7 +24,7 @@ static int_v potentially_visible(const __global Shot* shot, const __global int* 
         facing |= is_before(-dot_v(normal, corner), squared);
         in_front |= is_before(dot_axis(shot->normal, corner), squared);
     }
-    const int own = planes[shot->patch];
+    const int own = shot->plane;
     const int_v coplanar = own < 0 ? (int_v)0 : equal_v(load_v(patch, planes), (int_v)own);
     return facing & in_front & ~coplanar;
 }

@@ -55,7 +55,8 @@ typedef uint uint32_t;
 typedef struct {
     int32_t origin[3];  // one of the shooter's hemispheres, grid steps
     float u_axis[3], v_axis[3], normal[3];
-    int32_t patch;
+    int32_t shooter;
+    int32_t plane;  // the shooter's, as `planes`
     uint32_t part, part_count;  // its hemispheres: aimed so far, and all
     int32_t status;
     uint32_t shots, shot_limit;
@@ -83,10 +84,10 @@ typedef struct {
     uint32_t columns, rows;
 } Projection;
 
-// The most energetic patch of kReduceBlock patches.
+// The most energetic of kReduceBlock shooters.
 typedef struct {
     float energy;  // unshot flux over the bands' weights
-    int32_t patch;
+    int32_t shooter;
 } BlockSummary;
 
 // Form factors in the making, [kind][patch], sums over the shooter's hemispheres: closed form times
@@ -101,7 +102,7 @@ typedef struct {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 8);
-static_assert(sizeof(Shot) == 120);
+static_assert(sizeof(Shot) == 124);
 static_assert(sizeof(Projection) == 72);
 }  // namespace hemirad::device
 #endif

@@ -12,6 +12,7 @@ std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution, FormFacto
     const bool triangles_only = std::all_of(mesh.patches.begin(), mesh.patches.end(),
                                             [](const Patch& patch) { return patch.is_triangle(); });
     return estimated_device_bytes(static_cast<std::uint32_t>(mesh.patches.size()),
+                                  static_cast<std::uint32_t>(mesh.shooter_count()),
                                   triangles_only ? 3 : 4, plan_bands(mesh).solved.size(),
                                   resolution, mode, row_bytes, array);
 }

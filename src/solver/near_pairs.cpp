@@ -82,15 +82,15 @@ class Cells {
 
     /// Calls with every patch that a hemisphere at the shooter's centre may be wrong about.
     template <class Visit>
-    void visit_near(std::size_t shooter, const Visit& visit) const {
+    void visit_near(const PatchShape& shooter, const Visit& visit) const {
         const auto consider = [&](std::size_t receiver) {
-            const double wrong = error_of_centre(patches_[shooter], patches_[receiver]);
-            if (receiver != shooter && wrong > error_) visit(receiver, wrong);
+            const double wrong = error_of_centre(shooter, patches_[receiver]);
+            if (wrong > error_) visit(receiver, wrong);
         };
         std::ranges::for_each(large_, consider);
-        const glm::dvec3 far(reach(patches_[shooter], error_) + largest_kept_);
-        const Cell first = cell_of(patches_[shooter].centre - far);
-        const Cell last = cell_of(patches_[shooter].centre + far);
+        const glm::dvec3 far(reach(shooter, error_) + largest_kept_);
+        const Cell first = cell_of(shooter.centre - far);
+        const Cell last = cell_of(shooter.centre + far);
         for_each_cell(first, last, [&](const std::vector<std::size_t>& cell) {
             std::ranges::for_each(cell, consider);
         });
@@ -133,16 +133,35 @@ class Cells {
     std::vector<std::size_t> large_;
 };
 
-using Pair = std::pair<std::size_t, std::size_t>;  // the lower patch first
+using Pair = std::pair<std::size_t, std::size_t>;  // shooter and receiver
 
+// Either way round if one is near: the lower patch first.
 std::vector<Pair> pairs_of(std::span<const PatchShape> patches, double error) {
     const Cells cells(patches, error);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < patches.size(); ++i)
-        cells.visit_near(i, [&](std::size_t j, double) { pairs.push_back(std::minmax(i, j)); });
+        cells.visit_near(patches[i], [&](std::size_t j, double) {
+            if (j != i) pairs.push_back(std::minmax(i, j));
+        });
     std::ranges::sort(pairs);
     const auto repeated = std::ranges::unique(pairs);
     pairs.erase(repeated.begin(), repeated.end());
+    return pairs;
+}
+
+bool is_own(const Shooter& shooter, std::size_t patch) {
+    return patch - shooter.first_patch < shooter.patch_count;
+}
+
+std::vector<Pair> pairs_of(const Mesh& mesh, std::span<const PatchShape> shooters,
+                           std::span<const PatchShape> patches, double error) {
+    const Cells cells(patches, error);
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < shooters.size(); ++i)
+        cells.visit_near(shooters[i], [&](std::size_t j, double) {
+            if (!is_own(mesh.shooters[i], j)) pairs.emplace_back(i, j);
+        });
+    std::ranges::sort(pairs);
     return pairs;
 }
 
@@ -157,7 +176,8 @@ double exchange_area(const PatchShape& smaller, const PatchShape& larger) {
     return smaller.area * polygon_to_polygon(smaller.corners, larger.corners);
 }
 
-std::vector<double> exchange_areas(std::span<const PatchShape> patches,
+std::vector<double> exchange_areas(std::span<const PatchShape> shooters,
+                                   std::span<const PatchShape> patches,
                                    std::span<const Pair> pairs) {
     std::vector<double> result(pairs.size());
     const std::size_t thread_count = std::max(1u, std::thread::hardware_concurrency());
@@ -165,7 +185,7 @@ std::vector<double> exchange_areas(std::span<const PatchShape> patches,
     for (std::size_t first = 0; first < thread_count; ++first)
         threads.emplace_back([&, first] {
             for (std::size_t i = first; i < pairs.size(); i += thread_count) {
-                const PatchShape &a = patches[pairs[i].first], &b = patches[pairs[i].second];
+                const PatchShape &a = shooters[pairs[i].first], &b = patches[pairs[i].second];
                 result[i] = a.area < b.area ? exchange_area(a, b) : exchange_area(b, a);
             }
         });
@@ -173,15 +193,16 @@ std::vector<double> exchange_areas(std::span<const PatchShape> patches,
     return result;
 }
 
-}  // namespace
-
-NearPairs near_pairs(const Mesh& mesh, double error) {
-    const auto patches = patch_shapes(mesh);
-    const auto pairs = pairs_of(patches, error);
-    if (pairs.size() > std::numeric_limits<std::int32_t>::max() / 2)
-        throw InputError(std::to_string(pairs.size()) +
+void require_indexable(std::size_t pairs) {
+    if (pairs > std::numeric_limits<std::int32_t>::max() / 2)
+        throw InputError(std::to_string(pairs) +
                          " pairs of patches are near; raise --sampling-error");
-    const auto exchange = exchange_areas(patches, pairs);
+}
+
+NearPairs both_ways(std::span<const PatchShape> patches, double error) {
+    const auto pairs = pairs_of(patches, error);
+    require_indexable(pairs.size());
+    const auto exchange = exchange_areas(patches, patches, pairs);
 
     NearPairs near;
     near.begin.assign(patches.size() + 1, 0);
@@ -202,13 +223,43 @@ NearPairs near_pairs(const Mesh& mesh, double error) {
     return near;
 }
 
+NearPairs from_shooters(const Mesh& mesh, std::span<const PatchShape> patches, double error) {
+    const auto shooters = shooter_shapes(mesh);
+    const auto pairs = pairs_of(mesh, shooters, patches, error);
+    require_indexable(pairs.size());
+    const auto exchange = exchange_areas(shooters, patches, pairs);
+
+    NearPairs near;
+    near.begin.assign(shooters.size() + 1, 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const auto [from, to] = pairs[i];
+        near.begin[from + 1] = static_cast<std::int32_t>(i + 1);
+        near.patch.push_back(static_cast<std::int32_t>(to));
+        near.form_factor.push_back(static_cast<float>(exchange[i] / shooters[from].area));
+    }
+    for (std::size_t i = 0; i < shooters.size(); ++i)
+        near.begin[i + 1] = std::max(near.begin[i], near.begin[i + 1]);
+    return near;
+}
+
+}  // namespace
+
+NearPairs near_pairs(const Mesh& mesh, double error) {
+    const auto patches = patch_shapes(mesh);
+    return mesh.shooters.empty() ? both_ways(patches, error) : from_shooters(mesh, patches, error);
+}
+
 std::vector<std::int32_t> shooter_samples_for(const Mesh& mesh, double error, std::int32_t most) {
     const auto patches = patch_shapes(mesh);
+    const auto shooters = mesh.shooters.empty() ? patches : shooter_shapes(mesh);
     const Cells cells(patches, error);
     std::vector<std::int32_t> samples;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
+    for (std::size_t i = 0; i < shooters.size(); ++i) {
         double largest = error;
-        cells.visit_near(i, [&](std::size_t, double wrong) { largest = std::max(largest, wrong); });
+        cells.visit_near(shooters[i], [&](std::size_t j, double wrong) {
+            const bool own = mesh.shooters.empty() ? j == i : is_own(mesh.shooters[i], j);
+            if (!own) largest = std::max(largest, wrong);
+        });
         const double needed = std::ceil(std::sqrt(largest / error));
         samples.push_back(static_cast<std::int32_t>(std::min<double>(needed, most)));
     }

@@ -13,7 +13,7 @@ namespace hemirad {
 
 /// Closed forms from polygon to polygon, by shooter.
 struct NearPairs {
-    std::vector<std::int32_t> begin;  ///< [patch], and one more: into the other two
+    std::vector<std::int32_t> begin;  ///< [shooter], and one more: into the other two
     std::vector<std::int32_t> patch;  ///< that faces the shooter
     std::vector<float> form_factor;   ///< from the shooter, unblocked
 };
@@ -22,7 +22,8 @@ struct NearPairs {
 /// from receiver to shooter: that is what a receiver's irradiance goes by.
 NearPairs near_pairs(const Mesh& mesh, double error);
 
-/// M of the M x M hemispheres that each patch needs to keep that error below `error`, 1 to `most`.
+/// M of the M x M hemispheres that each shooter needs to keep that error below `error`, 1 to
+/// `most`.
 std::vector<std::int32_t> shooter_samples_for(const Mesh& mesh, double error, std::int32_t most);
 
 }  // namespace hemirad

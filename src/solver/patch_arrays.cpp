@@ -38,8 +38,9 @@ double normalising_scale(const Extent& extent) {
 }
 
 bool only_triangles(const Mesh& mesh) {
-    return std::all_of(mesh.patches.begin(), mesh.patches.end(),
-                       [](const Patch& patch) { return patch.is_triangle(); });
+    const auto is_triangle = [](const auto& of) { return of.corners[3] == of.corners[2]; };
+    return std::ranges::all_of(mesh.patches, is_triangle) &&
+           std::ranges::all_of(mesh.shooters, is_triangle);
 }
 
 std::array<std::int32_t, 3> on_grid(const glm::dvec3& normalised) {
@@ -56,30 +57,50 @@ void store(std::vector<Element>& to, std::size_t row, std::uint32_t stride, std:
         to[(row * 3 + axis) * stride + patch] = static_cast<Element>(value[axis]);
 }
 
+// Patches or shooters, on the grid that `arrays` has.
+template <class Polygons>
+void store_polygons(PatchArrays& arrays, const Mesh& mesh, const Polygons& polygons) {
+    arrays.patch_count = static_cast<std::uint32_t>(polygons.size());
+    arrays.stride = (arrays.patch_count + kReduceBlock - 1) / kReduceBlock * kReduceBlock;
+    arrays.corners.resize(std::size_t{3} * arrays.corner_count * arrays.stride);
+    arrays.normals.resize(std::size_t{3} * arrays.stride);
+    arrays.planes.resize(arrays.stride, -1);
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+        for (std::uint32_t k = 0; k < arrays.corner_count; ++k) {
+            const auto& world = mesh.vertices[polygons[i].corners[k]];
+            store(arrays.corners, k, arrays.stride, i,
+                  on_grid((world - arrays.centre) * arrays.scale));
+        }
+        const std::uint32_t surface = polygons[i].surface;
+        store(arrays.normals, 0, arrays.stride, i, mesh.normal({polygons[i].corners, surface}));
+        arrays.planes[i] = static_cast<std::int32_t>(mesh.surfaces[surface].plane);
+    }
+}
+
 }  // namespace
 
 PatchArrays patch_arrays(const Mesh& mesh) {
     const Extent extent = extent_of(mesh);
     PatchArrays arrays;
-    arrays.patch_count = static_cast<std::uint32_t>(mesh.patches.size());
-    arrays.stride = (arrays.patch_count + kReduceBlock - 1) / kReduceBlock * kReduceBlock;
     arrays.corner_count = only_triangles(mesh) ? 3 : 4;
     arrays.centre = 0.5 * extent.least + 0.5 * extent.most;
     arrays.scale = normalising_scale(extent);
-    arrays.corners.resize(std::size_t{3} * arrays.corner_count * arrays.stride);
-    arrays.normals.resize(std::size_t{3} * arrays.stride);
-    arrays.planes.resize(arrays.stride, -1);
-    for (std::size_t patch = 0; patch < mesh.patches.size(); ++patch) {
-        for (std::uint32_t k = 0; k < arrays.corner_count; ++k) {
-            const auto& world = mesh.vertices[mesh.patches[patch].corners[k]];
-            store(arrays.corners, k, arrays.stride, patch,
-                  on_grid((world - arrays.centre) * arrays.scale));
-        }
-        store(arrays.normals, 0, arrays.stride, patch, mesh.normal(mesh.patches[patch]));
-        const std::uint32_t surface = mesh.patches[patch].surface;
-        arrays.planes[patch] = static_cast<std::int32_t>(mesh.surfaces[surface].plane);
-    }
+    store_polygons(arrays, mesh, mesh.patches);
     return arrays;
+}
+
+ShooterArrays shooter_arrays(const Mesh& mesh, const PatchArrays& patches) {
+    if (mesh.shooters.empty()) return {};
+    ShooterArrays shooters;
+    shooters.polygons.corner_count = patches.corner_count;
+    shooters.polygons.centre = patches.centre;
+    shooters.polygons.scale = patches.scale;
+    store_polygons(shooters.polygons, mesh, mesh.shooters);
+    for (const Shooter& shooter : mesh.shooters)
+        shooters.first_patch.push_back(static_cast<std::int32_t>(shooter.first_patch));
+    shooters.first_patch.resize(shooters.polygons.stride + 1,
+                                static_cast<std::int32_t>(patches.patch_count));
+    return shooters;
 }
 
 double unit_scale(const Mesh& mesh) {

@@ -21,11 +21,20 @@ struct PatchArrays {
     double scale = 1;  ///< normalised = (world - centre) * scale; steps = normalised / kGridStep
 };
 
+/// What shoots, where patches do so in groups (Mesh::shooters): on the patches' grid.
+struct ShooterArrays {
+    PatchArrays polygons;
+    std::vector<std::int32_t> first_patch;  ///< [polygons.stride + 1]; consecutive, the rest empty
+};
+
 /// The power of two that brings a mesh's coordinates to about 1: no bit of a result changes where a
 /// scene is scaled by one, and squares are neither too large nor too small for floats.
 double unit_scale(const Mesh& mesh);
 
 /// Throws InputError where the scene's extent cannot be normalised.
 PatchArrays patch_arrays(const Mesh& mesh);
+
+/// Empty where every patch shoots for itself.
+ShooterArrays shooter_arrays(const Mesh& mesh, const PatchArrays& patches);
 
 }  // namespace hemirad

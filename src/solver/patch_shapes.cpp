@@ -31,4 +31,12 @@ std::vector<PatchShape> patch_shapes(const Mesh& mesh) {
     return shapes;
 }
 
+std::vector<PatchShape> shooter_shapes(const Mesh& mesh) {
+    std::vector<PatchShape> shapes;
+    const double scale = unit_scale(mesh);
+    for (const Shooter& shooter : mesh.shooters)
+        shapes.push_back(shape_of(mesh, {shooter.corners, shooter.surface}, scale));
+    return shapes;
+}
+
 }  // namespace hemirad

@@ -18,4 +18,7 @@ struct PatchShape {
 
 std::vector<PatchShape> patch_shapes(const Mesh& mesh);
 
+/// Of Mesh::shooters.
+std::vector<PatchShape> shooter_shapes(const Mesh& mesh);
+
 }  // namespace hemirad

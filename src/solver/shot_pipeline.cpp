@@ -53,7 +53,7 @@ bool needs_owners(const PipelineSettings& settings) {
 }
 
 std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution,
-                          std::uint32_t corner_count, std::size_t bands,
+                          std::uint32_t corner_count, std::size_t bands, bool two_levels,
                           const PipelineSettings& settings) {
     return definition("LANES", array.lanes) + definition("PE_WIDTH", array.width) +
            definition("PE_HEIGHT", array.height) + definition("TILE_WIDTH", array.tile_width) +
@@ -61,6 +61,7 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            definition("CORNERS", corner_count) + definition("BANDS", bands) +
            definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
            definition("BROADCAST_PATCHES", array.broadcast_patches()) +
+           flag("TWO_LEVELS", two_levels) +
            flag("LAYOUT_BLOCK", array.layout == mp1map::Layout::block) +
            flag("EVALUATE_INCREMENTAL", settings.variants.incremental) +
            flag("DISTANCE_CONSTANT", settings.variants.constant_distance) +
@@ -91,7 +92,7 @@ void require_countable(std::uint64_t disk_proxels, std::uint32_t resolution,
 
 device::Shot first_shot() {
     device::Shot shot{};
-    shot.patch = -1;
+    shot.shooter = -1;
     shot.status = kRunning;
     shot.unshot_fraction = 1;
     shot.shot_limit = std::numeric_limits<std::uint32_t>::max();
@@ -148,52 +149,60 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution) {
     return count;
 }
 
-std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
-                                     std::size_t bands, std::uint32_t resolution,
-                                     FormFactorMode mode, std::uint64_t row_bytes,
-                                     const mp1map::PeArray& array) {
+std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shooters,
+                                     std::uint32_t corner_count, std::size_t bands,
+                                     std::uint32_t resolution, FormFactorMode mode,
+                                     std::uint64_t row_bytes, const mp1map::PeArray& array) {
     const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
     const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
                                                      static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
     const std::uint64_t geometry = stride * 4 * (3 * corner_count + 5);
-    const std::uint64_t radiosity = stride * 4 * (4 * bands + 1);
+    const std::uint64_t shooter_stride =
+        std::uint64_t{quotient_up(shooters, kReduceBlock)} * kReduceBlock;
+    const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride) + 4 * stride;
+    const std::uint64_t groups =
+        shooters < patches ? shooter_stride * 4 * (3 * corner_count + 6) : 0;
     const std::uint64_t projection = slots * (sizeof(device::Projection) + 4) + stacks * 4;
     const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * stacks);
     const std::uint64_t plane = 4 * tiles * array.tile_width * array.tile_height;
     const std::uint64_t reduction =
-        stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
+        shooter_stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
     const std::uint64_t analytic =
         mode == FormFactorMode::analytic ? stride * 4 * (kFactorKinds + 2) + plane : 0;
     const std::uint64_t rows =
-        4 * ((row_capacity(patches, stride, row_bytes) + 1) * (stride + 1) + stride);
-    return geometry + radiosity + projection + lists + plane + reduction + analytic + rows;
+        4 * ((row_capacity(shooters, stride, row_bytes) + 1) * (stride + 1) + shooter_stride);
+    return geometry + radiosity + groups + projection + lists + plane + reduction + analytic + rows;
 }
 
 ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
-                           const PipelineSettings& settings, const mp1map::Device& device)
+                           const PipelineSettings& settings, const mp1map::Device& device,
+                           const ShooterArrays& shooters)
     : array_(mp1map::fit_pe_array(device.summary(), settings.pe_array)),
       acu_(device, settings.timed),
       resolution_(settings.resolution),
       stride_(patches.stride),
+      shooter_stride_(shooters.first_patch.empty() ? stride_ : shooters.polygons.stride),
       band_count_(light.band_count),
       tile_count_(count_tiles(resolution_, array_)),
       stack_count_(array_.array_count * array_.pe_count()),
       depth_(stack_depth(stride_, stack_count_)),
-      row_capacity_(row_capacity(patches.patch_count, stride_, settings.row_bytes)),
+      row_capacity_(row_capacity(
+          shooters.first_patch.empty() ? patches.patch_count : shooters.polygons.patch_count,
+          stride_, settings.row_bytes)),
       disk_proxels_(disk_proxel_count(resolution_)),
       mode_(settings.form_factor),
       tolerance_(static_cast<float>(settings.tolerance)),
-      samples_(samples_of(settings, stride_)) {
+      samples_(samples_of(settings, shooter_stride_)) {
     require_addressable(patches);
     require_countable(disk_proxels_, resolution_, samples_);
-    build_kernels(device, settings, patches.corner_count);
+    build_kernels(device, settings, patches.corner_count, !shooters.first_patch.empty());
     shot_ = acu_.plural(std::vector{first_shot()});
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
     planes_ = acu_.plural(patches.planes);
-    patch_samples_ = acu_.plural(samples_);
+    load_shooters(shooters);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
     stack_ = acu_.plural<std::int32_t>(std::size_t{stack_count_} * depth_);
     stack_height_ = acu_.plural<std::int32_t>(stack_count_);
@@ -206,6 +215,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     activity_ = acu_.plural<std::uint32_t>(kActivityCounters);
 
     const std::size_t states = band_count_ * stride_;
+    const std::size_t blocks = shooter_stride_ / kReduceBlock;
     received_ = acu_.plural<float>(states);
     received_rest_ = acu_.plural<float>(states);
     unshot_ = acu_.plural(light.emitted);
@@ -216,16 +226,16 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     // One row more, for shots whose row is not kept.
     rows_ = acu_.unset_plural<float>((std::size_t{row_capacity_} + 1) * stride_);
     row_escaped_ = acu_.plural<float>(row_capacity_ + 1);
-    row_of_ = acu_.plural<std::int32_t>(stride_);
-    summaries_ = acu_.plural<device::BlockSummary>(stride_ / kReduceBlock);
-    block_unshot_ = acu_.plural<float>(stride_ / kReduceBlock * band_count_);
+    row_of_ = acu_.plural<std::int32_t>(shooter_stride_);
+    summaries_ = acu_.plural<device::BlockSummary>(blocks);
+    block_unshot_ = acu_.plural<float>(blocks * band_count_);
 }
 
 void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
-                                 std::uint32_t corner_count) {
+                                 std::uint32_t corner_count, bool two_levels) {
     const auto start = std::chrono::steady_clock::now();
     const std::string options =
-        build_options(array_, resolution_, corner_count, band_count_, settings);
+        build_options(array_, resolution_, corner_count, band_count_, two_levels, settings);
     std::string source;
     const auto names = kernel_names(mode_);
     for (const auto& name : names) source += kernel_source(name, settings.kernels_dir);
@@ -234,13 +244,22 @@ void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSet
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+void ShotPipeline::load_shooters(const ShooterArrays& shooters) {
+    const bool own = shooters.first_patch.empty();
+    shooter_corners_ = own ? corners_ : acu_.plural(shooters.polygons.corners);
+    shooter_normals_ = own ? normals_ : acu_.plural(shooters.polygons.normals);
+    shooter_planes_ = own ? planes_ : acu_.plural(shooters.polygons.planes);
+    first_patch_ = acu_.plural(shooters.first_patch);
+    shooter_samples_ = acu_.plural(samples_);
+}
+
 void ShotPipeline::load_near_pairs(const NearPairs& pairs) {
     const std::size_t used = mode_ == FormFactorMode::analytic ? stride_ : 0;
     covered_count_ = acu_.plural<std::int32_t>(used);
     factors_ = acu_.plural<float>(kFactorKinds * used);
     factor_block_sums_ = acu_.plural<float>(2 * used / kReduceBlock);
     std::vector<std::int32_t> begin = pairs.begin;
-    begin.resize(used + 1, begin.empty() ? 0 : begin.back());
+    begin.resize(used == 0 ? 1 : shooter_stride_ + 1, begin.empty() ? 0 : begin.back());
     near_begin_ = acu_.plural(begin);
     near_patch_ = acu_.plural(pairs.patch);
     near_factor_ = acu_.plural(pairs.form_factor);
@@ -261,8 +280,8 @@ mp1map::Grid ShotPipeline::tile_grid() const { return {tile_count_, array_.pe_co
 void ShotPipeline::init_plane() { acu_.issue(kernel("init_plane"), tile_grid(), roots_); }
 
 void ShotPipeline::aim_hemisphere() {
-    acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, corners_, normals_, std::int32_t(stride_),
-               patch_samples_);
+    acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, shooter_corners_, shooter_normals_,
+               shooter_planes_, std::int32_t(shooter_stride_), shooter_samples_);
 }
 
 void ShotPipeline::cull_patches() {
@@ -314,7 +333,7 @@ void ShotPipeline::add_up_factors() {
 
 void ShotPipeline::spread_residual() {
     acu_.issue(kernel("spread_residual"), {1, kReducePes}, shot_, factor_block_sums_,
-               std::int32_t(summaries_.size()), proxel_count_, std::int32_t(stride_),
+               std::int32_t(stride_ / kReduceBlock), proxel_count_, std::int32_t(stride_),
                std::int32_t(disk_proxels_));
 }
 
@@ -326,15 +345,16 @@ void ShotPipeline::update_radiosity() {
 
 void ShotPipeline::update_unshot() {
     acu_.issue(kernel("update_unshot"), stack_grid(), shot_, shot_flux_, rows_,
-               std::int32_t(stride_), unshot_, reflectance_, band_weight_, summaries_,
-               block_unshot_);
+               std::int32_t(stride_), first_patch_, std::int32_t(shooter_stride_), unshot_,
+               reflectance_, band_weight_, summaries_, block_unshot_);
 }
 
 void ShotPipeline::choose_shooter() {
     acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
-               std::int32_t(summaries_.size()), unshot_, std::int32_t(stride_), band_weight_,
-               tolerance_, std::int32_t(disk_proxels_), proxel_count_, escaped_, shot_flux_,
-               std::int32_t(row_capacity_), row_of_, row_escaped_);
+               std::int32_t(summaries_.size()), unshot_, std::int32_t(shooter_stride_),
+               band_weight_, tolerance_, std::int32_t(disk_proxels_), proxel_count_,
+               std::int32_t(stride_), escaped_, shot_flux_, std::int32_t(row_capacity_), row_of_,
+               row_escaped_);
 }
 
 device::Shot ShotPipeline::shot() { return acu_.unload(shot_).front(); }
@@ -343,9 +363,9 @@ void ShotPipeline::set_shot(const device::Shot& shot) {
     acu_.load(shot_, std::span<const device::Shot>(&shot, 1));
 }
 
-void ShotPipeline::set_shooter(std::uint32_t patch, std::uint32_t part) {
+void ShotPipeline::set_shooter(std::uint32_t shooter, std::uint32_t part) {
     device::Shot next = shot();
-    next.patch = static_cast<std::int32_t>(patch);
+    next.shooter = static_cast<std::int32_t>(shooter);
     next.part = part;
     next.status = kRunning;
     next.row = static_cast<std::int32_t>(row_capacity_);
@@ -361,8 +381,8 @@ void ShotPipeline::set_shot_limit(std::uint64_t shots) {
     set_shot(next);
 }
 
-std::uint32_t ShotPipeline::part_count(std::uint32_t patch) const {
-    return static_cast<std::uint32_t>(samples_[patch] * samples_[patch]);
+std::uint32_t ShotPipeline::part_count(std::uint32_t shooter) const {
+    return static_cast<std::uint32_t>(samples_[shooter] * samples_[shooter]);
 }
 
 void ShotPipeline::enlarge_lists() {

@@ -39,8 +39,8 @@ struct Activity {
 
 struct PipelineSettings {
     std::uint32_t resolution = 512;
-    std::uint32_t shooter_samples = 1;        ///< M x M hemispheres a patch,
-    std::vector<std::int32_t> patch_samples;  ///< [patch] unless these are given
+    std::uint32_t shooter_samples = 1;        ///< M x M hemispheres a shooter,
+    std::vector<std::int32_t> patch_samples;  ///< [shooter] unless these are given
     FormFactorMode form_factor = FormFactorMode::count;
     NearPairs near_pairs;  ///< for FormFactorMode::analytic; may be empty
     double tolerance = 1e-3;
@@ -53,8 +53,8 @@ struct PipelineSettings {
     bool keep_owners = false;     ///< for tests: owners() after each projection
 };
 
-/// Flux and reflectance of the solved bands, [band * stride + patch]; the fluxes of a band add up
-/// to 1, or to 0 where it is dark.
+/// Flux and reflectance of the solved bands, [band * shooter_stride + shooter]; the fluxes of a
+/// band add up to 1, or to 0 where it is dark.
 struct PatchLight {
     std::size_t band_count = 1;
     std::vector<float> emitted;
@@ -69,10 +69,12 @@ PatchLight even_light(const PatchArrays& patches, float reflectance = 0.5f);
 /// What a shooter sees and what becomes of its flux stays on the device.
 class ShotPipeline {
   public:
+    /// Without `shooters` every patch shoots for itself.
     ShotPipeline(const PatchArrays& patches, const PatchLight& light,
-                 const PipelineSettings& settings, const mp1map::Device& device);
+                 const PipelineSettings& settings, const mp1map::Device& device,
+                 const ShooterArrays& shooters = {});
 
-    /// Other patches, as many and of as many corners as before.
+    /// Other patches, as many and of as many corners as before; each shoots for itself.
     void load(const PatchArrays& patches);
 
     void init_plane();
@@ -95,13 +97,13 @@ class ShotPipeline {
     device::Shot shot();
     void set_shot(const device::Shot& shot);
     /// The next shooter, instead of the most energetic one; its first hemisphere is `part`.
-    void set_shooter(std::uint32_t patch, std::uint32_t part = 0);
+    void set_shooter(std::uint32_t shooter, std::uint32_t part = 0);
     void set_shot_limit(std::uint64_t shots);  ///< goes on after kPaused, up to so many in all
     /// After kBinsFull: makes room for the lists and lets the halted shot be repeated.
     void enlarge_lists();
 
     std::vector<double> received();  ///< [band * stride + patch], of the emitted flux
-    std::vector<float> unshot();     ///< [band * stride + patch]
+    std::vector<float> unshot();     ///< [band * shooter_stride + shooter]
     std::vector<double> escaped();   ///< [band]
     /// Of the hemispheres since the last shot; after the patches' (stride()) those that escaped.
     std::vector<std::int32_t> proxel_counts();
@@ -117,9 +119,10 @@ class ShotPipeline {
 
     FormFactorMode mode() const { return mode_; }
     std::uint64_t disk_proxels() const { return disk_proxels_; }  ///< of one hemisphere
-    std::uint32_t part_count(std::uint32_t patch) const;          ///< hemispheres of a patch
+    std::uint32_t part_count(std::uint32_t shooter) const;        ///< its hemispheres
     const mp1map::PeArray& pe_array() const { return array_; }
     std::uint32_t stride() const { return stride_; }
+    std::uint32_t shooter_stride() const { return shooter_stride_; }
     std::size_t band_count() const { return band_count_; }
     mp1map::Acu& acu() { return acu_; }
     std::uint64_t device_bytes() const { return acu_.allocated_bytes(); }
@@ -128,7 +131,8 @@ class ShotPipeline {
   private:
     mp1map::Kernel& kernel(const std::string& name);
     void build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
-                       std::uint32_t corner_count);
+                       std::uint32_t corner_count, bool two_levels);
+    void load_shooters(const ShooterArrays& shooters);
     void load_near_pairs(const NearPairs& pairs);
     mp1map::Grid stack_grid() const;
     mp1map::Grid tile_grid() const;
@@ -138,18 +142,21 @@ class ShotPipeline {
     std::map<std::string, mp1map::Kernel> kernels_;
     double build_seconds_ = 0;
 
-    std::uint32_t resolution_, stride_;
+    std::uint32_t resolution_, stride_, shooter_stride_;
     std::size_t band_count_;
     std::uint32_t tile_count_, stack_count_, depth_, row_capacity_;
     std::uint64_t disk_proxels_;
     FormFactorMode mode_;
     float tolerance_;
-    std::vector<std::int32_t> samples_;  // [patch]
+    std::vector<std::int32_t> samples_;  // [shooter]
 
     mp1map::Plural<device::Shot> shot_;
     mp1map::Plural<std::int32_t> corners_, planes_;
     mp1map::Plural<float> normals_, roots_;
-    mp1map::Plural<std::int32_t> patch_samples_;
+    // The patches' own where each shoots for itself.
+    mp1map::Plural<std::int32_t> shooter_corners_, shooter_planes_, first_patch_;
+    mp1map::Plural<float> shooter_normals_;
+    mp1map::Plural<std::int32_t> shooter_samples_;
     mp1map::Plural<std::int32_t> stack_, stack_height_;
     mp1map::Plural<device::Projection> projections_;
     mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;
@@ -157,7 +164,7 @@ class ShotPipeline {
     mp1map::Plural<float> near_factor_, factors_, factor_block_sums_;
     mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
-    mp1map::Plural<std::int32_t> row_of_;  // [patch] its row + 1; 0: it has none
+    mp1map::Plural<std::int32_t> row_of_;  // [shooter] its row + 1; 0: it has none
     mp1map::Plural<float> rows_, row_escaped_;
     mp1map::Plural<std::uint32_t> activity_;
     mp1map::Plural<device::BlockSummary> summaries_;
@@ -170,9 +177,9 @@ std::vector<std::string> kernel_names(FormFactorMode mode);
 std::uint64_t disk_proxel_count(std::uint32_t resolution);
 
 /// Bytes a pipeline holds on the device; near pairs, 8 bytes each, come on top.
-std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t corner_count,
-                                     std::size_t bands, std::uint32_t resolution,
-                                     FormFactorMode mode, std::uint64_t row_bytes,
-                                     const mp1map::PeArray& array);
+std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shooters,
+                                     std::uint32_t corner_count, std::size_t bands,
+                                     std::uint32_t resolution, FormFactorMode mode,
+                                     std::uint64_t row_bytes, const mp1map::PeArray& array);
 
 }  // namespace hemirad

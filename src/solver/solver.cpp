@@ -18,17 +18,34 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+std::vector<Shooter> shooters_of(const Mesh& mesh) {
+    if (!mesh.shooters.empty()) return mesh.shooters;
+    std::vector<Shooter> shooters;
+    for (std::uint32_t i = 0; i < mesh.patches.size(); ++i)
+        shooters.push_back({mesh.patches[i].corners, mesh.patches[i].surface, i, 1});
+    return shooters;
+}
+
+double area_of(const Mesh& mesh, const Shooter& shooter) {
+    double area = 0;
+    for (std::uint32_t i = 0; i < shooter.patch_count; ++i)
+        area += mesh.area(mesh.patches[shooter.first_patch + i]);
+    return area;
+}
+
 PatchLight patch_light(const Mesh& mesh, const BandPlan& plan, std::uint32_t stride) {
     PatchLight light;
+    const auto shooters = shooters_of(mesh);
     light.band_count = plan.solved.size();
     light.emitted.resize(light.band_count * stride);
     light.reflectance.resize(light.band_count * stride);
     for (std::size_t band = 0; band < light.band_count; ++band) {
         const double emitted = emitted_flux(mesh, plan.solved[band]);
         light.band_weight.push_back(emitted > 0 ? 1.0f : 0.0f);
-        for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
-            const Patch& patch = mesh.patches[i];
-            const double own = emitted_radiosity(mesh, patch, plan.solved[band]) * mesh.area(patch);
+        for (std::size_t i = 0; i < shooters.size(); ++i) {
+            const Patch& patch = mesh.patches[shooters[i].first_patch];
+            const double own =
+                emitted_radiosity(mesh, patch, plan.solved[band]) * area_of(mesh, shooters[i]);
             light.emitted[band * stride + i] = emitted > 0 ? static_cast<float>(own / emitted) : 0;
             light.reflectance[band * stride + i] = reflectance(mesh, patch, plan.solved[band]);
         }
@@ -68,8 +85,10 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
 ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSettings& settings,
                           const mp1map::Device& device) {
     const PatchArrays patches = patch_arrays(mesh);
-    return ShotPipeline(patches, patch_light(mesh, plan, patches.stride),
-                        pipeline_settings(mesh, settings, device.summary()), device);
+    const ShooterArrays shooters = shooter_arrays(mesh, patches);
+    const std::uint32_t stride = mesh.shooters.empty() ? patches.stride : shooters.polygons.stride;
+    return ShotPipeline(patches, patch_light(mesh, plan, stride),
+                        pipeline_settings(mesh, settings, device.summary()), device, shooters);
 }
 
 }  // namespace
@@ -201,8 +220,9 @@ Solution ProgressiveSolver::solution() {
             irradiance.push_back(flux / mesh_.area(patch));
             radiosity.push_back(emitted_radiosity(mesh_, patch, band) + rho * irradiance.back());
             ledger.absorbed += (1 - rho) * flux;
-            ledger.unshot += emitted * unshot[at];
         }
+        for (std::size_t i = 0; i < mesh_.shooter_count(); ++i)
+            ledger.unshot += emitted * unshot[solved * pipeline_.shooter_stride() + i];
         solution.irradiance.push_back(std::move(irradiance));
         solution.radiosity.push_back(std::move(radiosity));
         solution.ledger.push_back(ledger);

@@ -33,7 +33,7 @@ class AimHemisphere {
 
     Frame operator()(int patch, int samples, int part) {
         device::Shot shot{};
-        shot.patch = patch;
+        shot.shooter = patch;
         shot.part = static_cast<std::uint32_t>(part);
         shot.status = kRunning;
         shot = aimed(shot, samples);
@@ -45,7 +45,7 @@ class AimHemisphere {
     device::Shot aimed(const device::Shot& shot, int samples) {
         auto plural = run_.plural(std::vector{shot});
         run_.issue({1, 1}, plural, run_.plural(arrays_.corners), run_.plural(arrays_.normals),
-                   std::int32_t(arrays_.stride),
+                   run_.plural(arrays_.planes), std::int32_t(arrays_.stride),
                    run_.plural(std::vector<std::int32_t>(arrays_.stride, samples)));
         return run_.acu().unload(plural).front();
     }

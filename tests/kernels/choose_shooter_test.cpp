@@ -37,7 +37,7 @@ Books random_books(std::size_t blocks, std::size_t bands) {
     Books books;
     books.bands = bands;
     books.shot.status = kRunning;
-    books.shot.patch = 3;
+    books.shot.shooter = 3;
     books.shot.shots = 41;
     books.shot.part = books.shot.part_count = kParts;
     books.shot.shot_limit = std::numeric_limits<std::uint32_t>::max();
@@ -80,8 +80,8 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         run.issue({1, GetParam()}, shot, run.plural(books.summaries),
                   run.plural(books.block_unshot), std::int32_t(books.summaries.size()),
                   run.plural(books.unshot), std::int32_t(books.stride()), run.plural(books.weight),
-                  books.tolerance, kDiskProxels, proxel_count, escaped, flux, books.row_capacity,
-                  row_of, row_escaped);
+                  books.tolerance, kDiskProxels, proxel_count, std::int32_t(books.stride()),
+                  escaped, flux, books.row_capacity, row_of, row_escaped);
         Books result = books;
         result.shot = run.acu().unload(shot).front();
         result.escaped = run.acu().unload(escaped);
@@ -116,9 +116,9 @@ TEST_P(ChooseShooter, TheMostEnergeticPatchOfAllBlocksShootsNextWithItsUnshotFlu
 
         const auto after = closed(books);
 
-        EXPECT_EQ(after.shot.patch, most->patch);
+        EXPECT_EQ(after.shot.shooter, most->shooter);
         for (std::size_t band = 0; band < 3; ++band)
-            EXPECT_EQ(after.flux[band], books.unshot[band * books.stride() + most->patch]);
+            EXPECT_EQ(after.flux[band], books.unshot[band * books.stride() + most->shooter]);
         EXPECT_EQ(after.shot.status, kRunning);
     }
 }
@@ -127,7 +127,7 @@ TEST_P(ChooseShooter, TiesGoToTheLowestPatch) {
     auto books = random_books(200, 1);
     for (const std::size_t block : {17u, 80u, 81u, 199u}) books.summaries[block].energy = 2;
 
-    EXPECT_EQ(closed(books).shot.patch, 17 * kReduceBlock + 32);
+    EXPECT_EQ(closed(books).shot.shooter, 17 * kReduceBlock + 32);
 }
 
 TEST_P(ChooseShooter, TheUnshotFractionIsThatOfTheBandWithTheLargest) {
@@ -175,7 +175,7 @@ TEST_P(ChooseShooter, RowsAreKeptWhileThereIsRoom) {
 
     const auto after = closed(books);
 
-    EXPECT_EQ(after.row_of[books.shot.patch], 3);
+    EXPECT_EQ(after.row_of[books.shot.shooter], 3);
     EXPECT_EQ(after.row_escaped[2], 40.0f / (kDiskProxels * kParts));
     EXPECT_EQ(after.shot.rows_kept, 3u);
     EXPECT_EQ(after.shot.row, 3);
@@ -238,7 +238,7 @@ TEST_P(ChooseShooter, AKnownRowBringsItsShareOfEscapesAndNoProxels) {
 
 TEST_P(ChooseShooter, BeforeTheFirstShotThereAreNoBooksToClose) {
     auto books = random_books(30, 1);
-    books.shot.patch = -1;
+    books.shot.shooter = -1;
     books.shot.shots = 0;
     books.escaped_count = 40;
 
@@ -247,7 +247,7 @@ TEST_P(ChooseShooter, BeforeTheFirstShotThereAreNoBooksToClose) {
     EXPECT_EQ(after.shot.shots, 0u);
     EXPECT_EQ(after.shot.most_surplus, books.shot.most_surplus);
     EXPECT_EQ(after.escaped[0], 0.0f);
-    EXPECT_GE(after.shot.patch, 0);
+    EXPECT_GE(after.shot.shooter, 0);
 }
 
 TEST_P(ChooseShooter, NothingIsClosedBeforeTheShootersLastHemisphere) {
@@ -258,7 +258,7 @@ TEST_P(ChooseShooter, NothingIsClosedBeforeTheShootersLastHemisphere) {
     const auto after = closed(books);
 
     EXPECT_EQ(after.shot.shots, books.shot.shots);
-    EXPECT_EQ(after.shot.patch, books.shot.patch);
+    EXPECT_EQ(after.shot.shooter, books.shot.shooter);
     EXPECT_EQ(after.shot.part, kParts - 1);
     EXPECT_EQ(counts_[books.stride()], 40);
 }
@@ -300,7 +300,7 @@ TEST_P(ChooseShooter, AHaltedShotKeepsItsShooterAndItsBooks) {
 
     const auto after = closed(books);
 
-    EXPECT_EQ(after.shot.patch, 3);
+    EXPECT_EQ(after.shot.shooter, 3);
     EXPECT_EQ(after.shot.shots, 41u);
     EXPECT_EQ(after.flux, books.flux);
     EXPECT_EQ(counts_[books.stride()], 40);

@@ -15,7 +15,7 @@ class CorrectNearPairs : public testing::TestWithParam<std::uint32_t> {
         KernelRun run("correct_near_pairs", {});
         device::Shot shot{};
         shot.status = kRunning;
-        shot.patch = 1;
+        shot.shooter = 1;
         shot.part = part;
         shot.part_count = 4;
         std::vector<float> factors(kFactorKinds * kPatches, 0.5f);

@@ -10,7 +10,7 @@
 namespace hemirad::test {
 namespace {
 
-constexpr std::uint32_t kStride = 4 * kReduceBlock;
+constexpr std::uint32_t kShooters = 4 * kReduceBlock, kStride = 6 * kReduceBlock;
 constexpr std::int32_t kRow = 1, kShooter = 77;
 constexpr std::size_t kSums = 16;  // of a block, so that lanes do not change their order
 
@@ -19,6 +19,7 @@ struct State {
     std::vector<float> shot_flux, weight;    // [band]
     std::vector<float> unshot, reflectance;  // [band][patch]
     std::vector<float> rows;                 // [row][patch]
+    std::vector<std::int32_t> first_patch;   // [shooter], and one more; empty: one level
     std::int32_t shooter = kShooter, status = kRunning;
     std::uint32_t part = 4;
 };
@@ -38,7 +39,7 @@ State random_state(std::size_t bands) {
         state.shot_flux.push_back(unit(random));
         state.weight.push_back(band == 1 ? 0.0f : unit(random));
     }
-    for (std::size_t i = 0; i < bands * kStride; ++i) {
+    for (std::size_t i = 0; i < bands * kShooters; ++i) {
         state.unshot.push_back(unit(random));
         state.reflectance.push_back(unit(random));
     }
@@ -47,13 +48,24 @@ State random_state(std::size_t bands) {
 }
 
 // The reflected part of what the row brings goes to what is unshot, of which the shooter has none.
+float form_factor_to(const State& state, std::size_t shooter) {
+    const float* const row = state.rows.data() + kRow * kStride;
+    if (state.first_patch.empty()) return row[shooter];
+    std::array<float, kSums> sums{};
+    for (int i = state.first_patch[shooter]; i < state.first_patch[shooter + 1]; ++i)
+        sums[(i - state.first_patch[shooter]) % kSums] += row[i];
+    float total = 0;
+    for (const float sum : sums) total += sum;
+    return total;
+}
+
 std::vector<float> expected_unshot(const State& state) {
     auto unshot = state.unshot;
     for (std::size_t band = 0; band < state.bands; ++band)
-        for (std::size_t patch = 0; patch < kStride; ++patch) {
-            const std::size_t at = band * kStride + patch;
-            const float flux = state.rows[kRow * kStride + patch] * state.shot_flux[band];
-            const bool is_shooter = static_cast<std::int32_t>(patch) == state.shooter;
+        for (std::size_t shooter = 0; shooter < kShooters; ++shooter) {
+            const std::size_t at = band * kShooters + shooter;
+            const float flux = form_factor_to(state, shooter) * state.shot_flux[band];
+            const bool is_shooter = static_cast<std::int32_t>(shooter) == state.shooter;
             unshot[at] = std::fma(state.reflectance[at], flux, is_shooter ? 0.0f : unshot[at]);
         }
     return unshot;
@@ -65,7 +77,7 @@ device::BlockSummary summary_of(const State& state, const std::vector<float>& un
     for (std::size_t patch = first; patch < first + kReduceBlock; ++patch) {
         float energy = 0;
         for (std::size_t band = 0; band < state.bands; ++band)
-            energy = std::fma(state.weight[band], unshot[band * kStride + patch], energy);
+            energy = std::fma(state.weight[band], unshot[band * kShooters + patch], energy);
         if (energy > summary.energy) summary = {energy, static_cast<std::int32_t>(patch)};
     }
     return summary;
@@ -74,7 +86,7 @@ device::BlockSummary summary_of(const State& state, const std::vector<float>& un
 float sum_of(const std::vector<float>& unshot, std::size_t band, std::size_t first) {
     std::array<float, kSums> sums{};
     for (std::size_t k = 0; k < kReduceBlock; ++k)
-        sums[k % kSums] += unshot[band * kStride + first + k];
+        sums[k % kSums] += unshot[band * kShooters + first + k];
     float total = 0;
     for (const float sum : sums) total += sum;
     return total;
@@ -82,7 +94,7 @@ float sum_of(const std::vector<float>& unshot, std::size_t band, std::size_t fir
 
 Outcome expected_outcome(const State& state) {
     Outcome outcome{expected_unshot(state), {}, {}};
-    for (std::size_t first = 0; first < kStride; first += kReduceBlock) {
+    for (std::size_t first = 0; first < kShooters; first += kReduceBlock) {
         outcome.summaries.push_back(summary_of(state, outcome.unshot, first));
         for (std::size_t band = 0; band < state.bands; ++band)
             outcome.block_unshot.push_back(sum_of(outcome.unshot, band, first));
@@ -94,18 +106,20 @@ Outcome updated(const State& state, const Shape& shape) {
     KernelOptions options;
     options.lanes = shape.lanes;
     options.bands = static_cast<std::uint32_t>(state.bands);
+    options.two_levels = !state.first_patch.empty();
     KernelRun run("update_unshot", options);
     device::Shot shot{};
-    shot.patch = state.shooter;
+    shot.shooter = state.shooter;
     shot.status = state.status;
     shot.part = state.part;
     shot.part_count = 4;
     shot.row = kRow;
     auto unshot = run.plural(state.unshot);
-    auto summaries = run.acu().plural<device::BlockSummary>(kStride / kReduceBlock);
-    auto block_unshot = run.acu().plural<float>(kStride / kReduceBlock * state.bands);
+    auto summaries = run.acu().plural<device::BlockSummary>(kShooters / kReduceBlock);
+    auto block_unshot = run.acu().plural<float>(kShooters / kReduceBlock * state.bands);
     run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
-              run.plural(state.shot_flux), run.plural(state.rows), std::int32_t(kStride), unshot,
+              run.plural(state.shot_flux), run.plural(state.rows), std::int32_t(kStride),
+              run.plural(state.first_patch), std::int32_t(kShooters), unshot,
               run.plural(state.reflectance), run.plural(state.weight), summaries, block_unshot);
     return {run.acu().unload(unshot), run.acu().unload(summaries), run.acu().unload(block_unshot)};
 }
@@ -116,7 +130,7 @@ void expect_equal(const Outcome& outcome, const Outcome& expected) {
     ASSERT_EQ(outcome.summaries.size(), expected.summaries.size());
     for (std::size_t block = 0; block < outcome.summaries.size(); ++block) {
         EXPECT_EQ(outcome.summaries[block].energy, expected.summaries[block].energy);
-        EXPECT_EQ(outcome.summaries[block].patch, expected.summaries[block].patch);
+        EXPECT_EQ(outcome.summaries[block].shooter, expected.summaries[block].shooter);
     }
 }
 
@@ -137,19 +151,31 @@ TEST_P(UpdateUnshot, AShotOfThreeBandsHasTheBitsOfTheScalarComputation) {
     expect_equal(updated(state, GetParam()), expected_outcome(state));
 }
 
+// 300 patches: of the first shooter 40, of the others 2 or 3 as it falls.
+TEST_P(UpdateUnshot, AShooterReflectsWhatItsElementsReceived) {
+    auto state = random_state(3);
+    state.first_patch = {0, 40};
+    while (state.first_patch.back() < 300)
+        state.first_patch.push_back(state.first_patch.back() +
+                                    (state.first_patch.size() % 3 == 0 ? 3 : 2));
+    state.first_patch.resize(kShooters + 1, state.first_patch.back());
+
+    expect_equal(updated(state, GetParam()), expected_outcome(state));
+}
+
 TEST_P(UpdateUnshot, EquallyEnergeticPatchesLeaveTheChoiceToTheLowest) {
     auto state = random_state(1);
     state.shooter = -1;
     state.weight = {1};
     state.rows.assign(state.rows.size(), 0.0f);
-    state.unshot.assign(kStride, 0.25f);
+    state.unshot.assign(kShooters, 0.25f);
     state.unshot[70] = state.unshot[75] = state.unshot[127] = 0.5f;
 
     const auto summaries = updated(state, GetParam()).summaries;
 
     const std::vector<std::int32_t> chosen = {0, 70, 128, 192};
     for (std::size_t block = 0; block < chosen.size(); ++block)
-        EXPECT_EQ(summaries[block].patch, chosen[block]);
+        EXPECT_EQ(summaries[block].shooter, chosen[block]);
 }
 
 TEST_P(UpdateUnshot, TheShooterKeepsOnlyWhatItSendsToItself) {

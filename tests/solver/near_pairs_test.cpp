@@ -4,6 +4,7 @@
 
 #include "formfactor/polygon_factors.h"
 #include "reference/closed_forms.h"
+#include "solver/patch_shapes.h"
 #include "support/patches.h"
 
 namespace hemirad::test {
@@ -62,6 +63,27 @@ TEST(NearPairs, HoldHoweverSmallOneOfTwoIs) {
         EXPECT_NEAR(near.form_factor[1] / expected, 1, 1e-6) << side;
         EXPECT_NEAR(near.form_factor[0] / expected / side / side * 900, 1, 1e-6) << side;
     }
+}
+
+// Two elements above the floor shoot as one, which a third, beside them, does not belong to.
+TEST(NearPairs, OfTwoLevelsAreThoseOfShooterAndElement) {
+    auto mesh = mesh_of({square({0, 0, 0}, kX, kY, 1), square({-0.5, 0, 1}, kY, kX, 1),
+                         square({0.5, 0, 1}, kY, kX, 1), square({1.5, 0, 1}, kY, kX, 1)});
+    const auto corner = [&](std::uint32_t patch, int k) { return mesh.patches[patch].corners[k]; };
+    mesh.shooters = {{mesh.patches[0].corners, 0, 0, 1},
+                     {{corner(1, 0), corner(1, 1), corner(2, 2), corner(2, 3)}, 1, 1, 2},
+                     {mesh.patches[3].corners, 3, 3, 1}};
+
+    const auto near = near_pairs(mesh, 1e-4);
+
+    ASSERT_EQ(near.begin, (std::vector<std::int32_t>{0, 3, 4, 5}));
+    EXPECT_EQ(near.patch, (std::vector<std::int32_t>{1, 2, 3, 0, 0}));
+    EXPECT_FLOAT_EQ(near.form_factor[0], near.form_factor[1]);
+    EXPECT_FLOAT_EQ(near.form_factor[3], near.form_factor[0]);  // both halves, of twice the area
+    EXPECT_FLOAT_EQ(near.form_factor[4], near.form_factor[2]);
+    EXPECT_NEAR(near.form_factor[0] + near.form_factor[1],
+                polygon_to_polygon(patch_shapes(mesh)[0].corners, shooter_shapes(mesh)[1].corners),
+                1e-7);
 }
 
 TEST(ShooterSamples, AreManyOnlyWhereSomethingIsNear) {

@@ -72,6 +72,7 @@ inline device::Shot shot_from(glm::dvec3 origin, glm::dvec3 normal) {
         shot.normal[axis] = static_cast<float>(n[axis]);
     }
     shot.status = kRunning;
+    shot.plane = -1;
     return shot;
 }
 
