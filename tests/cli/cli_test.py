@@ -188,6 +188,7 @@ class BadOptions(CommandLine):
                 "--tolerance": ("0", "1", "-1e-3", "nan"),
                 "--max-shots": ("0", "-1", "1.5", "99999999999999999999"),
                 "--time-limit": ("0", "-3", "inf"),
+                "--row-memory": ("-1", "1.5", "1G"),
                 "--quantity": ("light",),
                 "--compute-units": ("0", "100000"),
                 "--pe": ("4", "4x", "x4", "0x4", "4x4x4", "-4x4", "9999x9999"),
@@ -370,6 +371,18 @@ class Solve(CommandLine):
         self.assert_done(result)
         self.assertIn("stopped by --max-shots 3: 3 shots", result.stderr)
         self.assertEqual(3, json.loads((self.folder / "r.json").read_text())["shots"])
+
+    def test_row_memory_spares_work_and_changes_no_bit(self):
+        box = str(pathlib.Path(__file__).resolve().parents[2] / "scenes" / "furnace.obj")
+        self.assert_done(self.solve("-o", "a.exr", "--report", "a.json", scene=box))
+        self.assert_done(self.solve("-o", "b.exr", "--report", "b.json", "--row-memory", "0",
+                                    scene=box))
+        self.assertEqual((self.folder / "a.exr").read_bytes(),
+                         (self.folder / "b.exr").read_bytes())
+        repeated = [json.loads((self.folder / name).read_text())["repeated_shots"]
+                    for name in ("a.json", "b.json")]
+        self.assertGreater(repeated[0], 0)
+        self.assertEqual(0, repeated[1])
 
     def test_reads_kernels_from_a_folder(self):
         kernels = pathlib.Path(__file__).resolve().parents[2] / "kernels"
