@@ -35,12 +35,19 @@ double total_area(const Scene& scene) {
     return total;
 }
 
+Depths mirrored(Depths depths, std::uint32_t columns) {
+    for (auto row = depths.begin(); row != depths.end(); row += columns)
+        std::reverse(row, row + columns);
+    return depths;
+}
+
 /// Turns a scene into a mesh, a stage a function, in the order of `run`.
 class Mesher {
   public:
-    Mesher(const Scene& scene, const MeshSettings& settings)
+    Mesher(const Scene& scene, const MeshSettings& settings, std::vector<Depths> depths = {})
         : scene_(scene),
           settings_(settings),
+          depths_(std::move(depths)),
           precision_(precision_of(scene, settings.weld)),
           vertices_(precision_.weld, scene.positions.size()) {}
 
@@ -84,7 +91,8 @@ class Mesher {
         if (settings_.element_size == 0)
             settings_.element_size = std::numeric_limits<double>::infinity();
         check_size(settings_.patch_size, "patch", "patches");
-        check_size(settings_.element_size, "element", "elements");
+        check_size(std::ldexp(settings_.element_size, -int(settings_.split_levels)), "element",
+                   "elements");
     }
 
     void check_size(double size, const std::string& what, const std::string& plural) {
@@ -120,19 +128,37 @@ class Mesher {
         mesh_.warnings.insert(mesh_.warnings.end(), faces_.warnings.begin(), faces_.warnings.end());
     }
 
-    CutSurface cut(const Group& group, double patch_size, double element_size) {
+    Grids grids_of(const Group& group) const {
+        Grids grids{lay_grid(scene_, faces_, group, vertices_.positions(), precision_,
+                             settings_.patch_size),
+                    {}};
+        const Surface elements =
+            divide_cells(scene_, grids.patches, precision_, settings_.element_size);
+        for (std::uint32_t level = 0; level <= settings_.split_levels; ++level)
+            grids.elements.push_back(halve_cells(scene_, elements, level));
+        return grids;
+    }
+
+    CutSurface cut(const Group& group, Grids grids) {
         const auto merging = std::isinf(settings_.patch_size) ? Merging::none : Merging::in_cells;
-        const Surface grid =
-            lay_grid(scene_, faces_, group, vertices_.positions(), precision_, patch_size);
-        return cut_surface(faces_, group,
-                           {grid, divide_cells(scene_, grid, precision_, element_size)}, merging,
-                           precision_, vertices_);
+        return cut_surface(faces_, group, std::move(grids), merging, precision_, vertices_);
+    }
+
+    /// Of the group that comes next: of the next surface, if the group is that one, and not one of
+    /// which nothing was left.
+    Depths depths_for(const Surface& grid) const {
+        const std::size_t next = mesh_.surfaces.size();
+        const std::size_t cells = std::size_t{grid.columns} * grid.rows;
+        if (next >= depths_.size() || depths_[next].size() != cells) return {};
+        return depths_[next];
     }
 
     void add_fronts() {
         for (const Group& group : groups_) {
             const std::size_t index = mesh_.surfaces.size();
-            append(cut(group, settings_.patch_size, settings_.element_size), mesh_);
+            Grids grids = grids_of(group);
+            grids.depths = depths_for(grids.elements.back());
+            append(cut(group, std::move(grids)), mesh_);
             if (mesh_.surfaces.size() > index) front_groups_.push_back(&group);
         }
     }
@@ -148,7 +174,7 @@ class Mesher {
                     append(absorber_behind(group), mesh_);
                     break;
                 case Back::mirror:
-                    append(turn_over(copy_of(front)), mesh_);
+                    append(mirror_behind(group), mesh_);
                     break;
             }
             Part& part = parts_.parts[parts_.part_of_flat[group.front()]];
@@ -171,23 +197,18 @@ class Mesher {
     // Nothing varies on a black back: one cell.
     CutSurface absorber_behind(const Group& group) {
         constexpr double kUncut = std::numeric_limits<double>::infinity();
-        CutSurface back = turn_over(cut(group, kUncut, kUncut));
+        const Surface cell =
+            lay_grid(scene_, faces_, group, vertices_.positions(), precision_, kUncut);
+        CutSurface back = turn_over(cut(group, {cell, {cell}}));
         back.surface.material = static_cast<std::uint32_t>(mesh_.materials.size() - 1);
         back.surface.has_chart = false;
         return back;
     }
 
-    CutSurface copy_of(std::uint32_t index) const {
-        const Surface& surface = mesh_.surfaces[index];
-        const auto first = mesh_.patches.begin() + surface.first_patch;
-        CutSurface copy{surface, {first, first + surface.patch_count}, {}, {}};
-        const auto shooters =
-            std::ranges::equal_range(mesh_.shooters, index, {}, &Shooter::surface);
-        for (Shooter shooter : shooters) {
-            shooter.first_patch -= surface.first_patch;
-            copy.shooters.push_back(shooter);
-        }
-        return copy;
+    CutSurface mirror_behind(const Group& group) {
+        Grids grids = grids_of(group);
+        grids.depths = mirrored(depths_for(grids.elements.back()), grids.elements.back().columns);
+        return turn_over(cut(group, std::move(grids)));
     }
 
     void forget_lone_shooters() {
@@ -269,6 +290,7 @@ class Mesher {
 
     const Scene& scene_;
     MeshSettings settings_;
+    std::vector<Depths> depths_;  ///< of each surface, or none
     Precision precision_;
     VertexWelder vertices_;
     FlatFaces faces_;
@@ -277,6 +299,22 @@ class Mesher {
     std::vector<const Group*> front_groups_;  ///< of each front surface
     Mesh mesh_;
 };
+
+// By cell of the surface's grid, how often what lies there was split; `split` once more.
+Depths depths_of(const Surface& surface, std::uint32_t levels, const std::vector<bool>& split) {
+    Depths depths(std::size_t{surface.columns} * surface.rows, 0);
+    for (std::uint32_t i = 0; i < surface.patch_count; ++i) {
+        const std::uint32_t scale = surface.scale(i), side = 1u << scale;
+        const std::uint32_t more = scale > 0 && split[surface.first_patch + i] ? 1 : 0;
+        const auto depth = static_cast<std::uint8_t>(levels - scale + more);
+        for (std::uint32_t y = 0; y < side; ++y)
+            for (std::uint32_t x = 0; x < side; ++x) {
+                auto& there = depths[surface.cell_of_patch[i] + y * surface.columns + x];
+                there = std::max(there, depth);
+            }
+    }
+    return depths;
+}
 
 double round_to_two_digits(double value) {
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
@@ -290,6 +328,16 @@ namespace hemirad {
 
 Mesh build_mesh(const Scene& scene, const MeshSettings& settings) {
     return meshing::Mesher(scene, settings).run();
+}
+
+Mesh split_elements(const Scene& scene, const MeshSettings& settings, const Mesh& mesh,
+                    const std::vector<bool>& split) {
+    std::vector<meshing::Depths> depths;
+    for (const Surface& surface : mesh.surfaces)
+        depths.push_back(surface.scale_of_patch.empty()
+                             ? meshing::Depths{}
+                             : meshing::depths_of(surface, settings.split_levels, split));
+    return meshing::Mesher(scene, settings, std::move(depths)).run();
 }
 
 // 3,000 cells' worth of area: with its borders a Cornell box gets some 3,300 patches.

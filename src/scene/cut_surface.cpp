@@ -33,13 +33,13 @@ std::vector<MergedPiece> unmerged(Cell cell, double precision) {
 
 // Shares a piece's area out to the elements that its merged polygon was cut into. Shares add up to
 // the whole piece, also where straight corners that were left out had moved the outline a little.
-void share_out(const CellPiece& piece, std::span<const CellPiece> elements,
-               std::uint32_t first_patch, std::vector<Fragment>& fragments) {
+void share_out(const CellPiece& piece, std::span<const Polygon> elements, std::uint32_t first_patch,
+               std::vector<Fragment>& fragments) {
     std::vector<double> shares{1.0};
     if (elements.size() > 1) {
         shares.clear();
-        for (const CellPiece& element : elements)
-            shares.push_back(common_area(piece.polygon, element.polygon));
+        for (const Polygon& element : elements)
+            shares.push_back(common_area(piece.polygon, element));
     }
     const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
     if (total <= 0) return;
@@ -52,13 +52,13 @@ void share_out(const CellPiece& piece, std::span<const CellPiece> elements,
 class SurfaceCutter {
   public:
     SurfaceCutter(Grids grids, const Precision& precision, VertexWelder& vertices)
-        : grid_(std::move(grids.patches)),
+        : grids_(std::move(grids)),
           precision_(precision),
           vertices_(vertices),
-          cut_{std::move(grids.elements), {}, {}, {}} {}
+          cut_{grids_.elements.back(), {}, {}, {}} {}
 
     void cut(const FlatFaces& faces, const Group& group, Merging merging) {
-        const auto pieces = cut_into_cells(faces, group, grid_, precision_, vertices_);
+        const auto pieces = cut_into_cells(faces, group, grids_.patches, precision_, vertices_);
         for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
             while (end < pieces.size() && pieces[end].cell == pieces[begin].cell) ++end;
             const Cell cell(&pieces[begin], end - begin);
@@ -74,44 +74,80 @@ class SurfaceCutter {
   private:
     void add(const MergedPiece& merged, Cell cell) {
         const auto first_patch = static_cast<std::uint32_t>(cut_.patches.size());
-        std::vector<CellPiece> elements;
+        elements_.clear();
         for (const Polygon& shooter : cut_into_quads(merged.polygon, precision_.plane))
-            for (CellPiece& element : add_shooter({cell.front().cell, 0, shooter}))
-                elements.push_back(std::move(element));
-        if (elements.empty()) return;
+            add_shooter({cell.front().cell, 0, shooter});
+        if (elements_.empty()) return;
         for (const std::uint32_t piece : merged.pieces)
-            share_out(cell[piece], elements, first_patch, cut_.fragments);
+            share_out(cell[piece], elements_, first_patch, cut_.fragments);
     }
 
-    std::vector<CellPiece> add_shooter(const CellPiece& shooter) {
-        auto elements = elements_of(shooter);
-        if (elements.empty()) return {};
-        cut_.shooters.push_back({corners_of(shooter.polygon), 0,
-                                 static_cast<std::uint32_t>(cut_.patches.size()),
-                                 static_cast<std::uint32_t>(elements.size())});
-        for (const CellPiece& element : elements) {
-            cut_.patches.push_back({corners_of(element.polygon), 0});
-            cut_.surface.cell_of_patch.push_back(element.cell);
+    void add_shooter(const CellPiece& shooter) {
+        const auto first_patch = static_cast<std::uint32_t>(cut_.patches.size());
+        const Surface& coarsest = grids_.elements.front();
+        if (coarsest.columns != grids_.patches.columns || coarsest.rows != grids_.patches.rows)
+            cut_along(0, shooter);
+        else if (grids_.elements.size() > 1)
+            add_piece(0, shooter);
+        else
+            add_element(0, shooter.cell, shooter.polygon);
+        const auto count = static_cast<std::uint32_t>(cut_.patches.size()) - first_patch;
+        if (count > 0)
+            cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count});
+    }
+
+    void cut_along(std::size_t level, const CellPiece& piece) {
+        const Surface& grid = grids_.elements[level];
+        for (const CellPiece& part :
+             cut_into_cells(piece.polygon, piece.face, grid, precision_, vertices_))
+            add_piece(level, part);
+    }
+
+    void add_piece(std::size_t level, const CellPiece& piece) {
+        if (is_split(level, piece.cell)) {
+            cut_along(level + 1, piece);
+            return;
         }
-        return elements;
+        const auto polygon = without_straight_corners(piece.polygon, precision_.plane);
+        for (const Polygon& quad : cut_into_quads(polygon, precision_.plane))
+            add_element(level, piece.cell, quad);
     }
 
-    std::vector<CellPiece> elements_of(const CellPiece& shooter) {
-        const Surface& fine = cut_.surface;
-        if (fine.columns == grid_.columns && fine.rows == grid_.rows) return {shooter};
-        std::vector<CellPiece> elements;
-        for (const CellPiece& piece :
-             cut_into_cells(shooter.polygon, shooter.face, fine, precision_, vertices_))
-            for (Polygon& quad : cut_into_quads(
-                     without_straight_corners(piece.polygon, precision_.plane), precision_.plane))
-                elements.push_back({piece.cell, piece.face, std::move(quad)});
-        return elements;
+    bool is_split(std::size_t level, std::uint32_t cell) const {
+        if (grids_.depths.empty()) return false;
+        const auto [column, row, side] = block(level, cell);
+        for (std::uint32_t y = row; y < row + side; ++y)
+            for (std::uint32_t x = column; x < column + side; ++x)
+                if (grids_.depths[std::size_t{y} * cut_.surface.columns + x] > level) return true;
+        return false;
     }
 
-    Surface grid_;
+    void add_element(std::size_t level, std::uint32_t cell, const Polygon& polygon) {
+        const auto [column, row, side] = block(level, cell);
+        cut_.patches.push_back({corners_of(polygon), 0});
+        cut_.surface.cell_of_patch.push_back(row * cut_.surface.columns + column);
+        if (grids_.elements.size() > 1)
+            cut_.surface.scale_of_patch.push_back(
+                static_cast<std::uint8_t>(grids_.elements.size() - 1 - level));
+        elements_.push_back(polygon);
+    }
+
+    /// Cells of the finest grid.
+    struct Block {
+        std::uint32_t column, row, side;
+    };
+
+    Block block(std::size_t level, std::uint32_t cell) const {
+        const std::uint32_t columns = grids_.elements[level].columns;
+        const std::uint32_t side = 1u << (grids_.elements.size() - 1 - level);
+        return {cell % columns * side, cell / columns * side, side};
+    }
+
+    Grids grids_;
     Precision precision_;
     VertexWelder& vertices_;
     CutSurface cut_;
+    std::vector<Polygon> elements_;  ///< of the patches that are being added
 };
 
 }  // namespace
@@ -129,9 +165,9 @@ CutSurface turn_over(CutSurface cut) {
     surface.origin += surface.columns * surface.cell_size.x * surface.u_axis;
     surface.u_axis = -surface.u_axis;
     surface.normal = -surface.normal;
-    for (std::uint32_t& cell : surface.cell_of_patch) {
-        const std::uint32_t column = cell % surface.columns;
-        cell += surface.columns - 1 - 2 * column;
+    for (std::uint32_t i = 0; i < surface.cell_of_patch.size(); ++i) {
+        std::uint32_t& cell = surface.cell_of_patch[i];
+        cell += surface.columns - (1u << surface.scale(i)) - 2 * (cell % surface.columns);
     }
     for (Patch& patch : cut.patches) patch.corners = turned_over(patch.corners);
     for (Shooter& shooter : cut.shooters) shooter.corners = turned_over(shooter.corners);

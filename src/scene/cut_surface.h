@@ -18,17 +18,22 @@ struct CutSurface {
     std::vector<Fragment> fragments;
 };
 
-/// A surface's grid at both levels: every cell of `patches` is a whole number of cells of
-/// `elements` each way.
+/// How often each cell of a surface's finest grid has been split; empty: never.
+using Depths = std::vector<std::uint8_t>;
+
+/// A surface's grids, coarse to fine: that of its patches, each cell of which is a whole number of
+/// cells of the first of `elements` each way, and each of these two of the next.
 struct Grids {
-    Surface patches, elements;
+    Surface patches;
+    std::vector<Surface> elements;
+    Depths depths = {};
 };
 
 enum class Merging { in_cells, none };
 
 /// Fills the coarse grid with shooters: quads where the surface's faces fill a cell, triangles and
-/// quads where its outline runs through one. Then each shooter along the fine grid, likewise. The
-/// surface that comes back has the fine one.
+/// quads where its outline runs through one. Then each shooter along the grid of elements,
+/// likewise, and further where depths say so. The surface that comes back has the finest grid.
 CutSurface cut_surface(const FlatFaces& faces, const Group& group, Grids grids, Merging merging,
                        const Precision& precision, VertexWelder& vertices);
 

@@ -106,6 +106,16 @@ void check(const CellCount& cells, const Scene& scene, std::uint32_t object) {
                      "\" would have more than 100 million " + cells.patches);
 }
 
+Surface in_parts(const Scene& scene, Surface surface, const glm::dvec2& parts) {
+    const double columns = parts.x * surface.columns, rows = parts.y * surface.rows;
+    surface.cell_size /= parts;
+    const double size = std::max(surface.cell_size.x, surface.cell_size.y);
+    check({columns, rows, "element", "elements", size}, scene, surface.object);
+    surface.columns = static_cast<std::uint32_t>(columns);
+    surface.rows = static_cast<std::uint32_t>(rows);
+    return surface;
+}
+
 }  // namespace
 
 Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
@@ -133,16 +143,15 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
     return surface;
 }
 
-Surface divide_cells(const Scene& scene, Surface surface, const Precision& precision,
+Surface divide_cells(const Scene& scene, const Surface& surface, const Precision& precision,
                      double element_size) {
     const glm::dvec2 parts(divisions(surface.cell_size.x, element_size, precision.plane),
                            divisions(surface.cell_size.y, element_size, precision.plane));
-    const double columns = parts.x * surface.columns, rows = parts.y * surface.rows;
-    check({columns, rows, "element", "elements", element_size}, scene, surface.object);
-    surface.columns = static_cast<std::uint32_t>(columns);
-    surface.rows = static_cast<std::uint32_t>(rows);
-    surface.cell_size /= parts;
-    return surface;
+    return in_parts(scene, surface, parts);
+}
+
+Surface halve_cells(const Scene& scene, const Surface& surface, std::uint32_t levels) {
+    return in_parts(scene, surface, glm::dvec2(std::ldexp(1.0, static_cast<int>(levels))));
 }
 
 }  // namespace hemirad::meshing

@@ -15,7 +15,10 @@ Surface lay_grid(const Scene& scene, const FlatFaces& faces, const Group& group,
 
 /// The same surface with each of its cells divided evenly into cells of about `element_size`;
 /// infinity: not divided.
-Surface divide_cells(const Scene& scene, Surface surface, const Precision& precision,
+Surface divide_cells(const Scene& scene, const Surface& surface, const Precision& precision,
                      double element_size);
+
+/// The same surface with 2^levels cells a side in place of each.
+Surface halve_cells(const Scene& scene, const Surface& surface, std::uint32_t levels);
 
 }  // namespace hemirad::meshing

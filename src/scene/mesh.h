@@ -50,6 +50,13 @@ struct Surface {
     /// For each of its patches the grid cell it lies in, row * columns + column. A cell that the
     /// outline cuts holds several patches, one outside the outline none.
     std::vector<std::uint32_t> cell_of_patch;
+    /// Where patches were split: for each the power of two of cells a side that it covers, from its
+    /// cell to the right and upwards. Empty: one cell each.
+    std::vector<std::uint8_t> scale_of_patch;
+
+    std::uint32_t scale(std::uint32_t i) const {
+        return scale_of_patch.empty() ? 0 : scale_of_patch[i];
+    }
 };
 
 /// How much of an input face ended up in which patch.
@@ -111,6 +118,7 @@ struct MeshSettings {
     /// m; patches are cut into elements no longer than this, which then are Mesh::patches, and
     /// shoot as one (Mesh::shooters). 0: a patch is its own only element.
     double element_size = 0;
+    std::uint32_t split_levels = 0;  ///< how often split_elements() may split an element
     Backfaces backfaces = Backfaces::automatic;
     double max_reflectance = 0.98;
     double weld = 0;  ///< m; vertices closer than this are one; 0: as precise as the scene is
@@ -120,6 +128,12 @@ struct MeshSettings {
 /// coordinates), finds surfaces, lays the grid, adds the backs that `settings.backfaces` asks for.
 /// Throws InputError where nothing is left.
 Mesh build_mesh(const Scene& scene, const MeshSettings& settings);
+
+/// The mesh that build_mesh made of the scene, or this function of that, with elements split in
+/// four: those of `split`, by patch, that were split less than `settings.split_levels` times.
+/// Surfaces, their grids and the shooters stay.
+Mesh split_elements(const Scene& scene, const MeshSettings& settings, const Mesh& mesh,
+                    const std::vector<bool>& split);
 
 /// The patch size that `--patch-size` defaults to, m.
 double default_patch_size(const Scene& scene);

@@ -79,12 +79,16 @@ void expect_in_cells(const Mesh& mesh) {
     for (const Surface& s : mesh.surfaces) {
         ASSERT_EQ(s.cell_of_patch.size(), s.patch_count);
         for (std::uint32_t i = 0; i < s.patch_count; ++i) {
-            const auto centre = mesh.centroid(mesh.patches[s.first_patch + i]) - s.origin;
-            const double column =
-                glm::dot(centre, s.u_axis) / s.cell_size.x - s.cell_of_patch[i] % s.columns;
-            const double row =
-                glm::dot(centre, s.v_axis) / s.cell_size.y - s.cell_of_patch[i] / s.columns;
-            EXPECT_TRUE(column > 0 && column < 1 && row > 0 && row < 1) << column << ' ' << row;
+            const glm::dvec2 low(s.cell_of_patch[i] % s.columns, s.cell_of_patch[i] / s.columns);
+            const double side = 1u << s.scale(i);
+            for (const auto& corner : corners_of(mesh, mesh.patches[s.first_patch + i])) {
+                const auto from = corner - s.origin;
+                const auto at =
+                    glm::dvec2(glm::dot(from, s.u_axis), glm::dot(from, s.v_axis)) / s.cell_size -
+                    low;
+                EXPECT_TRUE(at.x > -1e-3 && at.x < side + 1e-3) << at.x << " of " << side;
+                EXPECT_TRUE(at.y > -1e-3 && at.y < side + 1e-3) << at.y << " of " << side;
+            }
         }
     }
 }
@@ -200,6 +204,88 @@ TEST(Elements, AreNotForBlackBacks) {
     EXPECT_EQ(mesh.surfaces[1].patch_count, 1u);
     EXPECT_EQ(mesh.shooters.size(), 5u);
     EXPECT_EQ(mesh.shooters.back().patch_count, 1u);
+}
+
+/// As often as `levels` allow, at random.
+Mesh split_at_random(const Scene& scene, const MeshSettings& settings, std::mt19937& random) {
+    Mesh mesh = build_mesh(scene, settings);
+    for (std::uint32_t level = 0; level < settings.split_levels; ++level) {
+        std::vector<bool> split(mesh.patches.size());
+        for (std::size_t i = 0; i < split.size(); ++i) split[i] = random() % 3 == 0;
+        mesh = split_elements(scene, settings, mesh, split);
+    }
+    return mesh;
+}
+
+TEST(SplitElements, BecomeFour) {
+    const Scene scene = scene_of({rectangle(0, 0, 3, 2)});
+    const MeshSettings settings{.patch_size = 1, .split_levels = 2, .backfaces = Backfaces::cull};
+    Mesh mesh = build_mesh(scene, settings);
+    ASSERT_EQ(mesh.patches.size(), 6u);
+    EXPECT_EQ(mesh.surfaces[0].columns, 12u);
+    EXPECT_TRUE(mesh.shooters.empty());
+
+    mesh = split_elements(scene, settings, mesh, {false, false, false, false, true, false});
+
+    ASSERT_EQ(mesh.patches.size(), 9u);
+    ASSERT_EQ(mesh.shooters.size(), 6u);
+    EXPECT_EQ(mesh.shooters[4].patch_count, 4u);
+    for (std::uint32_t i = 4; i < 8; ++i) {
+        EXPECT_EQ(mesh.surfaces[0].scale(i), 1u);
+        EXPECT_NEAR(mesh.area(mesh.patches[i]), 0.25, 1e-15);
+    }
+    EXPECT_EQ(mesh.surfaces[0].cell_of_patch[4], 4u * 12 + 4);
+    EXPECT_EQ(mesh.surfaces[0].cell_of_patch[7], 6u * 12 + 6);
+    EXPECT_EQ(mesh.surfaces[0].scale(8), 2u);
+    expect_nested(mesh);
+    expect_in_cells(mesh);
+}
+
+TEST(SplitElements, AreSplitAsOftenAsAllowed) {
+    const Scene scene = scene_of({rectangle(0, 0, 1, 1)});
+    const MeshSettings settings{.patch_size = 1, .split_levels = 2, .backfaces = Backfaces::cull};
+    Mesh mesh = build_mesh(scene, settings);
+    for (const std::size_t count : {4u, 16u, 16u}) {
+        mesh = split_elements(scene, settings, mesh, std::vector<bool>(mesh.patches.size(), true));
+        EXPECT_EQ(mesh.patches.size(), count);
+    }
+}
+
+TEST(SplitElements, NestInPatchesOfAnyShape) {
+    std::mt19937 random(7);
+    for (unsigned seed = 0; seed < 30; ++seed) {
+        const Scene scene = turned_pieces(seed);
+        const MeshSettings settings{.patch_size = 0.7,
+                                    .element_size = 0.3,
+                                    .split_levels = 3,
+                                    .backfaces = Backfaces::block};
+        const Mesh mesh = split_at_random(scene, settings, random);
+
+        EXPECT_GT(mesh.patches.size(), 2 * build_mesh(scene, settings).patches.size());
+        expect_nested(mesh);
+        expect_in_cells(mesh);
+        expect_whole_faces(scene, mesh);
+    }
+}
+
+TEST(SplitElements, OfBacksAreTheirOwn) {
+    Scene scene = scene_of({rectangle(0, 0, 2, 1)});
+    scene.materials[0].double_sided = true;
+    const MeshSettings settings{.patch_size = 1, .split_levels = 1};
+    const Mesh whole = build_mesh(scene, settings);
+    ASSERT_EQ(whole.patches.size(), 4u);
+
+    const Mesh mesh = split_elements(scene, settings, whole, {true, false, true, false});
+
+    ASSERT_EQ(mesh.patches.size(), 10u);
+    expect_nested(mesh);
+    expect_in_cells(mesh);
+    for (const std::size_t shooter : {0u, 2u}) {
+        EXPECT_EQ(mesh.shooters[shooter].patch_count, 4u);
+        for (int k = 0; k < 4; ++k)
+            EXPECT_EQ(mesh.vertices[mesh.shooters[shooter].corners[k]],
+                      whole.vertices[whole.patches[shooter].corners[k]]);
+    }
 }
 
 TEST(Elements, TooSmallAreRefused) {

@@ -52,6 +52,20 @@ TEST(Closure, NothingEscapesBetweenElementsOfARotatedRoom) {
     }
 }
 
+TEST(Closure, NothingEscapesBetweenSplitElementsOfARotatedRoom) {
+    std::mt19937 random(4);
+    const Scene scene = rotated(scene_named("lroom.obj"), random_rotation(random));
+    const MeshSettings settings{.patch_size = 0.7, .split_levels = 2};
+    Mesh mesh = build_mesh(scene, settings);
+    for (std::uint32_t level = 0; level < settings.split_levels; ++level) {
+        std::vector<bool> split(mesh.patches.size());
+        for (std::size_t i = 0; i < split.size(); ++i) split[i] = random() % 3 == 0;
+        mesh = split_elements(scene, settings, mesh, split);
+    }
+    mesh.shooters.clear();  // each looks for itself
+    expect_nothing_escapes(mesh, 256, 7);
+}
+
 TEST(Closure, IsExactForEveryShotOfAnOpenScene) {
     const Mesh mesh = meshed(scene_named("squares.obj"), 0.25);
     const auto device = mp1map::Device::open("");
