@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "lightmap/cell_values.h"
+
 namespace hemirad {
 namespace {
 
@@ -14,22 +16,6 @@ namespace {
 constexpr double kCoverageSlack = 1e-6;
 
 constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
-
-/// A weighted mean that is exact where all values are equal, because it sums differences.
-class WeightedMean {
-  public:
-    void add(double weight, double value) {
-        if (weight <= 0.0) return;
-        if (weight_ == 0.0) pivot_ = value;
-        weight_ += weight;
-        moment_ += weight * (value - pivot_);
-    }
-    bool empty() const { return weight_ == 0.0; }
-    double value() const { return pivot_ + moment_ / weight_; }
-
-  private:
-    double pivot_ = 0.0, weight_ = 0.0, moment_ = 0.0;
-};
 
 /// A convex polygon. A quad that four edges cut has at most eight corners; twice that is room for
 /// one that rounding has left slightly concave.
@@ -155,45 +141,6 @@ float snapped(double coverage) {
     return static_cast<float>(coverage);
 }
 
-std::vector<WeightedMean> cell_means(const Surface& surface, std::span<const double> patch_areas,
-                                     std::span<const double> patch_values) {
-    std::vector<WeightedMean> means(std::size_t{surface.columns} * surface.rows);
-    for (std::uint32_t i = 0; i < surface.patch_count; ++i) {
-        means[surface.cell_of_patch[i]].add(patch_areas[i], patch_values[surface.first_patch + i]);
-    }
-    return means;
-}
-
-/// The two cells whose centres enclose a position along one axis, in cells.
-struct Neighbours {
-    std::uint32_t low, high;
-    double high_weight;
-};
-
-Neighbours neighbours_of(double position, std::uint32_t count) {
-    const double clamped = std::clamp(position - 0.5, 0.0, count - 1.0);
-    const auto low = static_cast<std::uint32_t>(clamped);
-    return {low, std::min(low + 1, count - 1), clamped - low};
-}
-
-/// `fallback`: the cell to take where none of the four around the position has a patch.
-double interpolate(const Surface& surface, const std::vector<WeightedMean>& means,
-                   const glm::dvec2& position, std::uint32_t fallback) {
-    const Neighbours columns = neighbours_of(position.x, surface.columns);
-    const Neighbours rows = neighbours_of(position.y, surface.rows);
-    WeightedMean value;
-    const auto add = [&](std::uint32_t column, std::uint32_t row, double weight) {
-        const WeightedMean& mean = means[std::size_t{row} * surface.columns + column];
-        if (!mean.empty()) value.add(weight, mean.value());
-    };
-    const double u = columns.high_weight, v = rows.high_weight;
-    add(columns.low, rows.low, (1.0 - u) * (1.0 - v));
-    add(columns.high, rows.low, u * (1.0 - v));
-    add(columns.low, rows.high, (1.0 - u) * v);
-    add(columns.high, rows.high, u * v);
-    return value.empty() ? means[fallback].value() : value.value();
-}
-
 void write_coverage(Lightmap& lightmap, ChartFootprint& footprint) {
     const Chart& chart = footprint.chart;
     for (std::uint32_t y = chart.y; y < chart.y + chart.height; ++y) {
@@ -207,15 +154,16 @@ void write_coverage(Lightmap& lightmap, ChartFootprint& footprint) {
 void write_band(Lightmap& lightmap, std::size_t band, ChartFootprint& footprint,
                 const Surface& surface, std::span<const double> patch_values) {
     const Chart& chart = footprint.chart;
-    const auto means = cell_means(surface, footprint.patch_areas, patch_values);
+    const CellValues cells(surface, footprint.patch_areas,
+                           patch_values.subspan(surface.first_patch, surface.patch_count));
     const glm::dvec2 cells_a_texel = chart.texel_size / surface.cell_size;
     for (std::uint32_t y = chart.y; y < chart.y + chart.height; ++y) {
         for (std::uint32_t x = chart.x; x < chart.x + chart.width; ++x) {
             const std::size_t texel = std::size_t{y} * lightmap.width + x;
             if (lightmap.coverage[texel] == 0.0f) continue;
             const glm::dvec2 centre(x - chart.x + 0.5, chart.y + chart.height - y - 0.5);
-            lightmap.values[band][texel] = static_cast<float>(
-                interpolate(surface, means, centre * cells_a_texel, footprint.at(x, y).cell));
+            lightmap.values[band][texel] =
+                static_cast<float>(cells.at(centre * cells_a_texel, footprint.at(x, y).cell));
         }
     }
 }
