@@ -34,6 +34,17 @@ void add_element_size(CLI::App& command, MeshSettings& settings) {
         [&](const OptionValue& value) { settings.element_size = positive_number(value); });
 }
 
+void add_split(CLI::App& command, MeshSettings& settings) {
+    constexpr std::uint64_t kMostLevels = 8;
+    add_value(command,
+              {"--split", "LEVELS",
+               "elements are split in four so often, where light changes within them [0]"},
+              [&](const OptionValue& value) {
+                  settings.split_levels =
+                      static_cast<std::uint32_t>(whole_number(value, 0, kMostLevels));
+              });
+}
+
 std::string name_of(Backfaces backfaces) {
     return std::string(kBackfaces[static_cast<std::size_t>(backfaces)]);
 }

@@ -11,6 +11,9 @@ void add_mesh_options(CLI::App& command, MeshSettings& settings);
 /// --element-size, of those that solve.
 void add_element_size(CLI::App& command, MeshSettings& settings);
 
+/// --split, of solve.
+void add_split(CLI::App& command, MeshSettings& settings);
+
 /// The word that --backfaces takes.
 std::string name_of(Backfaces backfaces);
 

@@ -18,6 +18,7 @@
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
+#include "lightmap/find_splits.h"
 #include "lightmap/write_faces.h"
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
@@ -179,6 +180,28 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
     return coarser;
 }
 
+/// Solutions of the dial's coarsest step tell where elements are to be split.
+void split_where_light_varies(Work& work, const SolveOptions& options, const mp1map::Device& device,
+                              const Interrupts& interrupts) {
+    constexpr double kBound = 0.02, kTolerance = 1e-2;
+    SolveOptions pilot = without_snapshots(options);
+    pilot.quiet = true;
+    pilot.solver.resolution = pilot.solver.shooter_samples = 0;
+    pilot.solver.sampling_error = 0;
+    pilot.solver.max_shots = SolverSettings{}.max_shots;
+    pilot.solver.tolerance = std::max(pilot.solver.tolerance, kTolerance);
+    set_accuracy(pilot.solver, accuracy_at(0));
+    for (std::uint32_t level = 0; level < options.mesh.split_levels; ++level) {
+        const auto outcome = solve_once(work, pilot, device, interrupts);
+        if (outcome.stop != Stop::converged) return;
+        const auto split =
+            find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound);
+        if (std::ranges::find(split, true) == split.end()) return;
+        work.mesh = split_elements(work.scene, options.mesh, work.mesh, split);
+        require_memory(work, options, device.summary());
+    }
+}
+
 void write_results(const Work& work, const SolveOptions& options, const Outcome& outcome) {
     const bool layer = options.estimate_error && outcome.error;
     write_picture(options, work.mesh, work.layout, outcome.solution,
@@ -203,13 +226,14 @@ void warn_of_faint_light(const SolveOptions& options, Outcome& outcome) {
 
 int solve(SolveOptions options) {
     const Stopwatch total;
-    const auto work = prepare(options);
+    auto work = prepare(options);
     print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
     require_light(work);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_memory(work, options, device.summary());
 
     const Interrupts interrupts;
+    split_where_light_varies(work, options, device, interrupts);
     const Solving solving{work, device, interrupts};
     auto outcome = options.target_error ? solve_to_target(solving, options)
                                         : solve_and_estimate(solving, options);

@@ -51,7 +51,8 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
         [&](const OptionValue& value) { solver.sampling_error = positive_number(value); });
     add_mesh_options(command, options.mesh);
     add_element_size(command, options.mesh);
-    add_value(command, {"--texel-size", "METRES", "edge of a texel [half an element]"},
+    add_split(command, options.mesh);
+    add_value(command, {"--texel-size", "METRES", "edge of a texel [half the smallest element]"},
               [&](const OptionValue& value) { options.texel_size = positive_number(value); });
 }
 
@@ -229,6 +230,8 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         {"--quantity", name_of(options.quantity)}};
     if (options.mesh.element_size > 0)
         result.emplace_back("--element-size", number_text(options.mesh.element_size));
+    if (options.mesh.split_levels > 0)
+        result.emplace_back("--split", std::to_string(options.mesh.split_levels));
     if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (options.target_error)
         result.emplace_back("--target-error", number_text(*options.target_error));

@@ -182,6 +182,8 @@ class BadOptions(CommandLine):
         for option, values in {
                 "--shooter-samples": ("0", "-1", "many", "65"),
                 "--patch-size": ("0", "-1", "nan", "1m", ""),
+                "--element-size": ("0", "inf", "x"),
+                "--split": ("-1", "9", "x"),
                 "--texel-size": ("0", "inf", "x"),
                 "--max-reflectance": ("1", "0", "-0.5", "nan"),
                 "--backfaces": ("none",),
@@ -437,6 +439,20 @@ class Report(CommandLine):
                              report["settings"].get("element_size"))
         patches = counts[0][0]
         self.assertEqual([(patches, patches), (patches, patches), (patches, 9 * patches)], counts)
+
+    def test_counts_the_elements_that_light_splits(self):
+        def elements(*arguments):
+            self.assert_done(self.solve("--report", "r.json", "--backfaces", "cull", *arguments))
+            report = json.loads((self.folder / "r.json").read_text())
+            self.assertEqual(32, report["scene"]["patches"])
+            return report["scene"]["elements"]
+        once = elements("--split", "1", "--texel-size", "0.1", "-o", "a.exr")
+        twice = elements("--split", "2", "--texel-size", "0.1", "-o", "b.exr")
+        self.assertTrue(32 < once < twice < 16 * 32, (once, twice))
+        self.assertEqual(twice, elements("--split", "2", "--texel-size", "0.1", "-o", "c.exr",
+                                         "--compute-units", "1"))
+        self.assertEqual((self.folder / "b.exr").read_bytes(),
+                         (self.folder / "c.exr").read_bytes())
 
     def test_sums_up_the_files(self):
         self.assert_done(self.solve("--report", "r.json", "--preview", "p.png"))
