@@ -5,13 +5,13 @@
 #include "tiles.clh"
 
 __kernel void count_areas(const __global Shot* shot, const __global Projection* projections,
-                          const __global int* stack_height, int depth, __global int* entries) {
+                          const __global int* projection_count, int depth, __global int* entries) {
     if (!is_projecting(shot)) return;
     const int pe = get_global_id(0), pe_count = get_global_size(0);
     for (int tile = 0; tile < TILE_COLUMNS * TILE_ROWS; ++tile) entries[tile * pe_count + pe] = 0;
     const __global Projection* mine = projections + pe * depth;
-    for (int level = 0; level < stack_height[pe]; ++level) {
-        const TileSpan span = tile_span(mine[level].columns, mine[level].rows);
+    for (int slot = 0; slot < projection_count[pe]; ++slot) {
+        const TileSpan span = tile_span(mine[slot].columns, mine[slot].rows);
         for (int row = span.first_row; row <= span.last_row; ++row)
             for (int column = span.first_column; column <= span.last_column; ++column)
                 ++entries[(row * TILE_COLUMNS + column) * pe_count + pe];

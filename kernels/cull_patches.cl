@@ -1,5 +1,6 @@
 // Sec. 1.5.1: elimination of trivially invisible patches. Each PE tests the patches it manages,
-// pe * depth and on, and sorts its stack so that the visible ones lie on top, in their order.
+// pe * depth and on, LANES at a time, and stacks those among which one may be visible, in their
+// order.
 #include "patches.clh"
 #include "progress.clh"
 
@@ -16,13 +17,13 @@ static int_v potentially_visible(const __global Shot* shot, const __global int* 
                                  const __global float* normals, const __global int* planes,
                                  int stride, int patch) {
     const Point normal = consecutive_points(normals, stride, patch);
+    Point corner[CORNERS];
+    relative_corners(shot, corners, stride, patch, corner);
     int_v facing = 0, in_front = 0;
     for (int k = 0; k < CORNERS; ++k) {
-        const Point corner =
-            relative_to(shot, consecutive_corners(corners + 3 * k * stride, stride, patch));
-        const real_v squared = dot_v(corner, corner);
-        facing |= is_before(-dot_v(normal, corner), squared);
-        in_front |= is_before(dot_axis(shot->normal, corner), squared);
+        const real_v squared = dot_v(corner[k], corner[k]);
+        facing |= is_before(-dot_v(normal, corner[k]), squared);
+        in_front |= is_before(dot_axis(shot->normal, corner[k]), squared);
     }
     const int own = shot->plane;
     const int_v coplanar = own < 0 ? (int_v)0 : equal_v(load_v(patch, planes), (int_v)own);
@@ -32,20 +33,17 @@ static int_v potentially_visible(const __global Shot* shot, const __global int* 
 __kernel void cull_patches(const __global Shot* shot, const __global int* corners,
                            const __global float* normals, const __global int* planes,
                            int stride, int depth,
-                           __global int* stack, __global int* stack_height) {
+                           __global Level* stack, __global int* stack_height) {
     if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
     const int end = min((pe + 1) * depth, stride);
-    __global int* top = stack + pe * depth;
+    __global Level* top = stack + pe * (depth / LANES);
     int height = 0;
     for (int patch = pe * depth; patch < end; patch += LANES) {
-        const int_v visible =
-            potentially_visible(shot, corners, normals, planes, stride, patch);
-        if (!any_v(visible)) continue;
-        for (int lane = 0; lane < LANES; ++lane) {
-            top[height] = patch + lane;
-            height -= int_lane_of(visible, lane);
-        }
+        const Level level = {
+            patch,
+            bits_of(potentially_visible(shot, corners, normals, planes, stride, patch))};
+        if (level.visible != 0) top[height++] = level;
     }
     stack_height[pe] = height;
 }

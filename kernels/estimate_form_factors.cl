@@ -50,26 +50,25 @@ static float sub_proxel_visibility(const __global Shot* shot, const __global int
 
 __kernel void estimate_form_factors(const __global Shot* shot, const __global int* corners,
                                     const __global float* normals, int stride, int depth,
-                                    const __global int* stack, const __global int* stack_height,
+                                    const __global Level* stack, const __global int* stack_height,
                                     const __global int* owners, __global int* proxel_count,
                                     __global int* covered_count, __global float* factors) {
     if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
-    const int height = stack_height[pe];
+    const __global Level* level = stack + pe * (depth / LANES);
+    const __global Level* end = level + stack_height[pe];
     int owned = 0;
-    for (int level = 0; level < height; level += LANES) {
-        const int count = min(LANES, height - level);
-        int patches[LANES];
-        take_level(stack + pe * depth + level, count, patches);
+    for (; level < end; ++level) {
         Point corner[CORNERS];
-        gather_corners(shot, corners, stride, patches, corner);
+        relative_corners(shot, corners, stride, level->patch, corner);
         turn_corners(shot, corner);
         const real_v unblocked = point_to_polygon(corner);
         Point middle = corner[0];
         for (int k = 1; k < CORNERS; ++k) middle = sum_v(middle, corner[k]);
 
-        for (int lane = 0; lane < count; ++lane) {
-            const int patch = patches[lane];
+        for (int lane = 0; lane < LANES; ++lane) {
+            if ((level->visible >> lane & 1) == 0) continue;
+            const int patch = level->patch + lane;
             const int covered = covered_count[patch], visible = proxel_count[patch];
             const float factor = lane_of(unblocked, lane);
             const float3 direction = (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane),

@@ -10,16 +10,11 @@
 #include "progress.clh"
 #include "sum_form_factors.clh"
 
-#define PROJECTION_WORDS (sizeof(Projection) / sizeof(int))
-
 // Diffuses patches of the tile's list to the array: one, a batch, or a level of the stacks at a
 // time (BROADCAST_PATCHES).
 static void broadcast(const __global Projection* projections, const __global int* list, int count,
                       int pe, __local Projection* batch) {
-    for (int word = pe; word < count * (int)PROJECTION_WORDS; word += PE_COUNT)
-        ((__local int*)batch)[word] =
-            ((const __global int*)(projections + list[word / PROJECTION_WORDS]))
-                [word % PROJECTION_WORDS];
+    for (int k = pe; k < count; k += PE_COUNT) batch[k] = projections[list[k]];
 }
 
 // Depth planes are A" u + B" v + C" w; Spencer's constant distance (app. A) comes as A" alone.

@@ -1,5 +1,6 @@
 // Sec. 1.5.2: projection parameters. Each PE prepares the visible patches of its stack: shooter's
-// frame, elliptic arcs (eq. 1.2), depth plane (app. A), bounding rectangle (app. B).
+// frame, elliptic arcs (eq. 1.2), depth plane (app. A), bounding rectangle (app. B). Those whose
+// rectangle holds no proxel's centre are left out.
 #include "clip.clh"
 #include "patches.clh"
 #include "progress.clh"
@@ -28,12 +29,35 @@ static Point constant_depth(Point centre) {
     return result;
 }
 
-// An edge's plane with its displacement by kEdgeMargin of its reach for a unit. A repeated corner,
-// or an edge that points at the shooter, bounds nothing above the horizon.
-static Point relative_edge(Point plane, Point p, Point q) {
-    Point result = scaled_v(1.0f / edge_reach(p, q), plane);
-    result.z = choose_v(equal_v(dot_v(plane, plane), (real_v)0.0f), (real_v)1.0f, result.z);
-    return result;
+static Point unit_direction(Point corner, real_v distance) {
+    const real_v safe = choose_v(less_v((real_v)0.0f, distance), distance, (real_v)1.0f);
+    return scaled_v(1.0f / safe, corner);
+}
+
+typedef struct {
+    Point planes[CORNERS], depth;
+    int_v columns, rows;
+} Projections;
+
+// Of LANES patches, by their corners in the shooter's frame.
+static void set_up_outline(const Point* corner, Projections* of) {
+    Point direction[CORNERS];
+    real_v distance[CORNERS];
+    for (int k = 0; k < CORNERS; ++k) {
+        distance[k] = sqrt(dot_v(corner[k], corner[k]));
+        direction[k] = unit_direction(corner[k], distance[k]);
+    }
+    real_v moment = 1.0f;
+    for (int k = 0; k < CORNERS; ++k) {
+        const int next = (k + 1) % CORNERS;
+        of->planes[k] =
+            edge_plane(corner[k], corner[next], edge_reach(distance[k], distance[next]));
+        moment = least_moment(corner[k], corner[next], of->planes[k], moment);
+    }
+    const Bounds bounds = clipped_bounds(corner, direction, of->planes);
+    const real_v play = play_of(moment);
+    of->columns = proxel_range(bounds.u_least, bounds.u_most, play);
+    of->rows = proxel_range(bounds.v_least, bounds.v_most, play);
 }
 
 static void store_point(Point point, int lane, __global float* to) {
@@ -42,47 +66,50 @@ static void store_point(Point point, int lane, __global float* to) {
     to[2] = lane_of(point.z, lane);
 }
 
-static void store_projection(__global Projection* to, int lane, int patch, const Point* planes,
-                             Point depth, Bounds bounds) {
-    for (int k = 0; k < CORNERS; ++k) store_point(planes[k], lane, to->edge[k]);
-    store_point(depth, lane, to->depth);
-    to->patch = patch;
-    const float play = play_of(lane_of(bounds.distance, lane), lane_of(bounds.reach, lane));
-    to->columns = proxel_range(lane_of(bounds.u_least, lane), lane_of(bounds.u_most, lane), play);
-    to->rows = proxel_range(lane_of(bounds.v_least, lane), lane_of(bounds.v_most, lane), play);
+static void store_projection(__global Projection* to, int patch, int lane,
+                             const Projections* from) {
+    for (int k = 0; k < CORNERS; ++k) store_point(from->planes[k], lane, to->edge[k]);
+    store_point(from->depth, lane, to->depth);
+    to->patch = patch + lane;
+    to->columns = int_lane_of(from->columns, lane);
+    to->rows = int_lane_of(from->rows, lane);
+}
+
+// No proxel's centre lies between the empty range's ends, which is 1.
+static int_v has_proxels(const Projections* of) {
+    return ~equal_v(of->columns, (int_v)1) & ~equal_v(of->rows, (int_v)1);
 }
 
 __kernel void set_up_projection(const __global Shot* shot, const __global int* corners,
                                 const __global float* normals, int stride, int depth,
-                                const __global int* stack, const __global int* stack_height,
-                                __global Projection* projections) {
+                                const __global Level* stack, const __global int* stack_height,
+                                __global Projection* projections,
+                                __global int* projection_count) {
     if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
-    const int height = stack_height[pe];
-    for (int level = 0; level < height; level += LANES) {
-        const int count = min(LANES, height - level);
-        int patches[LANES];
-        take_level(stack + pe * depth + level, count, patches);
-        Point corner[CORNERS], planes[CORNERS];
-        gather_corners(shot, corners, stride, patches, corner);
-        const Point normal = gathered_points(normals, stride, patches);
-        const Point true_depth = depth_plane(shot, normal, height_over(normal, corner));
+    const __global Level* level = stack + pe * (depth / LANES);
+    const __global Level* end = level + stack_height[pe];
+    __global Projection* to = projections + pe * depth;
+    for (; level < end; ++level) {
+        const int patch = level->patch;
+        Point corner[CORNERS];
+        relative_corners(shot, corners, stride, patch, corner);
+        const Point normal = consecutive_points(normals, stride, patch);
+        const real_v height = height_over(normal, corner);
         turn_corners(shot, corner);
-        for (int k = 0; k < CORNERS; ++k)
-            planes[k] = edge_plane(corner[k], corner[(k + 1) % CORNERS]);
-        const Bounds bounds = clipped_bounds(corner, planes);
-        for (int k = 0; k < CORNERS; ++k)
-            planes[k] = relative_edge(planes[k], corner[k], corner[(k + 1) % CORNERS]);
+        Projections of;
+        set_up_outline(corner, &of);
+        const int kept = level->visible & bits_of(has_proxels(&of));
+        if (kept == 0) continue;
 #ifdef DISTANCE_CONSTANT
         Point centre = corner[0];
         for (int k = 1; k < CORNERS; ++k) centre = sum_v(centre, corner[k]);
-        const Point depth_of = constant_depth(scaled_v((real_v)(1.0f / CORNERS), centre));
+        of.depth = constant_depth(scaled_v((real_v)(1.0f / CORNERS), centre));
 #else
-        const Point depth_of = true_depth;
+        of.depth = depth_plane(shot, normal, height);
 #endif
-
-        __global Projection* to = projections + pe * depth + level;
-        for (int lane = 0; lane < count; ++lane)
-            store_projection(to + lane, lane, patches[lane], planes, depth_of, bounds);
+        for (int lane = 0; lane < LANES; ++lane)
+            if ((kept >> lane & 1) != 0) store_projection(to++, patch, lane, &of);
     }
+    projection_count[pe] = to - (projections + pe * depth);
 }

@@ -73,6 +73,12 @@ typedef struct {
     uint32_t repeated_shots;  // by known rows
 } Shot;
 
+// A level of a PE's stack (sec. 1.5.1): consecutive patches, one a lane, from `patch` on. `visible`
+// has a bit for each that may be seen.
+typedef struct {
+    int32_t patch, visible;
+} Level;
+
 // Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
 // An edge is (A, B, C) of eq. 1.2 as a moment: its value is the length by which the edge misses a
 // proxel's ray, over the distance of the edge's nearer end; positive inside.
@@ -103,6 +109,7 @@ typedef struct {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 8);
 static_assert(sizeof(Shot) == 124);
+static_assert(sizeof(Level) == 8);
 static_assert(sizeof(Projection) == 72);
 }  // namespace hemirad::device
 #endif

@@ -164,7 +164,8 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride) + 4 * stride;
     const std::uint64_t groups =
         shooters < patches ? shooter_stride * 4 * (3 * corner_count + 6) : 0;
-    const std::uint64_t projection = slots * (sizeof(device::Projection) + 4) + stacks * 4;
+    const std::uint64_t projection = slots * sizeof(device::Projection) +
+                                     slots / array.lanes * sizeof(device::Level) + stacks * 8;
     const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * stacks);
     const std::uint64_t plane = 4 * tiles * array.tile_width * array.tile_height;
     const std::uint64_t reduction =
@@ -204,8 +205,9 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     planes_ = acu_.plural(patches.planes);
     load_shooters(shooters);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
-    stack_ = acu_.plural<std::int32_t>(std::size_t{stack_count_} * depth_);
+    stack_ = acu_.plural<device::Level>(std::size_t{stack_count_} * (depth_ / array_.lanes));
     stack_height_ = acu_.plural<std::int32_t>(stack_count_);
+    projection_count_ = acu_.plural<std::int32_t>(stack_count_);
     projections_ = acu_.plural<device::Projection>(std::size_t{stack_count_} * depth_);
     list_end_ = acu_.plural<std::int32_t>(std::size_t{tile_count_} * stack_count_);
     lists_ = acu_.plural<std::int32_t>(list_capacity(stride_));
@@ -291,11 +293,12 @@ void ShotPipeline::cull_patches() {
 
 void ShotPipeline::set_up_projection() {
     acu_.issue(kernel("set_up_projection"), stack_grid(), shot_, corners_, normals_,
-               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, projections_);
+               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, projections_,
+               projection_count_);
 }
 
 void ShotPipeline::count_areas() {
-    acu_.issue(kernel("count_areas"), stack_grid(), shot_, projections_, stack_height_,
+    acu_.issue(kernel("count_areas"), stack_grid(), shot_, projections_, projection_count_,
                std::int32_t(depth_), list_end_);
 }
 
@@ -305,7 +308,7 @@ void ShotPipeline::prefix_sum() {
 }
 
 void ShotPipeline::bin_areas() {
-    acu_.issue(kernel("bin_areas"), stack_grid(), shot_, projections_, stack_height_,
+    acu_.issue(kernel("bin_areas"), stack_grid(), shot_, projections_, projection_count_,
                std::int32_t(depth_), list_end_, lists_);
 }
 
@@ -448,13 +451,28 @@ std::vector<std::int32_t> ShotPipeline::owners() {
     return owners;
 }
 
+std::vector<std::int32_t> ShotPipeline::visible_patches() {
+    const auto levels = acu_.unload(stack_);
+    const auto heights = acu_.unload(stack_height_);
+    std::vector<std::int32_t> result;
+    for (std::size_t pe = 0; pe < heights.size(); ++pe) {
+        const auto first =
+            levels.begin() + static_cast<std::ptrdiff_t>(pe * (depth_ / array_.lanes));
+        std::for_each(first, first + heights[pe], [&](const device::Level& level) {
+            for (std::int32_t lane = 0; lane < std::int32_t(array_.lanes); ++lane)
+                if ((level.visible >> lane & 1) != 0) result.push_back(level.patch + lane);
+        });
+    }
+    return result;
+}
+
 std::vector<device::Projection> ShotPipeline::projections() {
     const auto slots = acu_.unload(projections_);
-    const auto heights = acu_.unload(stack_height_);
+    const auto counts = acu_.unload(projection_count_);
     std::vector<device::Projection> result;
-    for (std::size_t pe = 0; pe < heights.size(); ++pe)
+    for (std::size_t pe = 0; pe < counts.size(); ++pe)
         result.insert(result.end(), slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_),
-                      slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_ + heights[pe]));
+                      slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_ + counts[pe]));
     return result;
 }
 

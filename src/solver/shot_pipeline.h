@@ -115,7 +115,8 @@ class ShotPipeline {
     std::vector<std::int32_t> owners();
     std::int32_t escaped_owner() const { return static_cast<std::int32_t>(stride_); }
     Activity activity();                            ///< since the last call; count_activity
-    std::vector<device::Projection> projections();  ///< of the last shot, in patch order
+    std::vector<std::int32_t> visible_patches();    ///< of the last hemisphere, ascending
+    std::vector<device::Projection> projections();  ///< of those with a proxel, ascending
 
     FormFactorMode mode() const { return mode_; }
     std::uint64_t disk_proxels() const { return disk_proxels_; }  ///< of one hemisphere
@@ -157,7 +158,8 @@ class ShotPipeline {
     mp1map::Plural<std::int32_t> shooter_corners_, shooter_planes_, first_patch_;
     mp1map::Plural<float> shooter_normals_;
     mp1map::Plural<std::int32_t> shooter_samples_;
-    mp1map::Plural<std::int32_t> stack_, stack_height_;
+    mp1map::Plural<device::Level> stack_;
+    mp1map::Plural<std::int32_t> stack_height_, projection_count_;
     mp1map::Plural<device::Projection> projections_;
     mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;
     mp1map::Plural<std::int32_t> covered_count_, near_begin_, near_patch_;

@@ -40,15 +40,21 @@ void shoot_from(ShotPipeline& pipeline, std::uint32_t shooter) {
 }
 
 mp1map::ProxelRange range_of(std::uint32_t first_and_last) {
-    // The kernels write an empty range as first > last, too.
     return {first_and_last & 0xffff, first_and_last >> 16};
 }
 
 PlaneView view_of(ShotPipeline& pipeline) {
+    constexpr mp1map::ProxelRange kEmpty{1, 0};
     PlaneView view;
-    for (const auto& projection : pipeline.projections())
-        view.visible.push_back({range_of(projection.columns), range_of(projection.rows),
-                                static_cast<std::uint32_t>(projection.patch)});
+    const auto projections = pipeline.projections();
+    auto next = projections.begin();
+    for (const std::int32_t patch : pipeline.visible_patches()) {
+        view.visible.push_back({kEmpty, kEmpty, static_cast<std::uint32_t>(patch)});
+        if (next == projections.end() || next->patch != patch) continue;
+        view.visible.back().columns = range_of(next->columns);
+        view.visible.back().rows = range_of(next->rows);
+        ++next;
+    }
     view.useful_proxels = pipeline.activity().useful_proxels;
     return view;
 }

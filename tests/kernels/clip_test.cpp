@@ -53,7 +53,7 @@ DeviceBounds bounds_of(const std::vector<Corners>& patches, std::uint32_t lanes)
     auto run = KernelRun::probe(
         "bounds", "bound_patches",
         probe_options(lanes, static_cast<std::uint32_t>(corner_count), kResolution));
-    auto values = run.acu().plural<float>(5 * count);
+    auto values = run.acu().plural<float>(4 * count);
     auto ranges = run.acu().plural<std::uint32_t>(2 * count);
     run.issue(probe_grid(count, lanes), run.plural(corners), std::int32_t(count), values, ranges);
     return {run.acu().unload(values), run.acu().unload(ranges)};

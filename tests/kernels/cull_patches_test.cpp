@@ -35,6 +35,12 @@ StackContents expected_stacks(const device::Shot& shot, const PatchArrays& array
     return contents;
 }
 
+void push_patches(const device::Level& level, const Shape& shape, std::vector<std::int32_t>& to) {
+    EXPECT_NE(level.visible, 0);
+    for (std::int32_t lane = 0; lane < std::int32_t(shape.lanes); ++lane)
+        if ((level.visible >> lane & 1) != 0) to.push_back(level.patch + lane);
+}
+
 StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
                            const Shape& shape) {
     const Stacks stacks(shape, arrays.stride);
@@ -42,17 +48,18 @@ StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
     options.lanes = shape.lanes;
     options.corners = arrays.corner_count;
     KernelRun run("cull_patches", options);
-    auto stack = run.plural(std::vector<std::int32_t>(stacks.slots(), -1));
+    auto stack = run.plural(std::vector<device::Level>(stacks.slots() / shape.lanes));
     auto heights = run.plural(std::vector<std::int32_t>(stacks.count(), -1));
     run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(arrays.corners),
               run.plural(arrays.normals), run.plural(arrays.planes), std::int32_t(arrays.stride),
               std::int32_t(stacks.depth), stack, heights);
 
-    const auto slots = run.acu().unload(stack), height = run.acu().unload(heights);
+    const auto levels = run.acu().unload(stack);
+    const auto height = run.acu().unload(heights);
     StackContents contents(stacks.count());
     for (std::size_t pe = 0; pe < stacks.count(); ++pe)
         for (int level = 0; level < height[pe]; ++level)
-            contents[pe].push_back(slots[pe * stacks.depth + level]);
+            push_patches(levels[pe * (stacks.depth / shape.lanes) + level], shape, contents[pe]);
     return contents;
 }
 

@@ -17,7 +17,7 @@ std::int32_t bits_of(float value) { return std::bit_cast<std::int32_t>(value); }
 std::vector<std::int32_t> expected_results(const std::vector<float>& a, const std::vector<float>& b,
                                            const std::vector<std::int32_t>& index,
                                            std::size_t lanes) {
-    std::vector<std::int32_t> result(8 * kCount);
+    std::vector<std::int32_t> result(9 * kCount);
     for (std::size_t i = 0; i < kCount; ++i) {
         const bool less = a[i] < b[i];
         bool any = false;
@@ -25,12 +25,13 @@ std::vector<std::int32_t> expected_results(const std::vector<float>& a, const st
             any |= a[k] < b[k];
         result[i] = less ? -1 : 0;
         result[kCount + i] = bits_of(less ? a[i] : b[i]);
-        result[2 * kCount + i] = bits_of(a[index[i]]);
+        result[2 * kCount + i] = less ? -1 : 0;
         result[3 * kCount + i] = static_cast<std::int32_t>(i);
         result[4 * kCount + i] = bits_of(static_cast<float>(index[i]));
         result[5 * kCount + i] = bits_of(a[i]);
         result[6 * kCount + i] = less ? -1 : 0;
         result[7 * kCount + i] = any;
+        result[8 * kCount + i] = (less ? 1 : 0) << i % lanes;
     }
     return result;
 }
@@ -53,7 +54,7 @@ TEST_P(Lanes, EveryOperationIsTheScalarOneInEachLane) {
         index.push_back(static_cast<std::int32_t>(random() % kCount));
     }
     auto run = KernelRun::probe("lanes", "operate", probe_options(GetParam()));
-    auto result = run.acu().plural<std::int32_t>(8 * kCount);
+    auto result = run.acu().plural<std::int32_t>(9 * kCount);
 
     run.issue(probe_grid(kCount, GetParam()), run.plural(a), run.plural(b), run.plural(index),
               std::int32_t(kCount), result);

@@ -1,42 +1,53 @@
 // ellipse_bounds.clh and clip.clh, shown to a test: the rectangle of one arc, and of a patch.
-// bounds: least u, most u, least v, most v, distance, of `count` arcs or patches each; ranges:
-// columns, then rows.
+// bounds: least u, most u, least v, most v, of `count` arcs or patches each; ranges: columns, then
+// rows.
 #include "clip.clh"
 #include "patches.clh"
 
-static void store_bounds(Bounds bounds, int count, int at, __global float* to,
-                         __global uint* ranges) {
+static Point direction_of(Point a) {
+    return scaled_v(1.0f / sqrt(dot_v(a, a)), a);
+}
+
+static Point plane_of(Point p, Point q) {
+    return edge_plane(p, q, edge_reach(sqrt(dot_v(p, p)), sqrt(dot_v(q, q))));
+}
+
+static void store_bounds(Bounds bounds, real_v play, int count, int at, __global float* to,
+                         __global int* ranges) {
     *real_vectors(to + at) = bounds.u_least;
     *real_vectors(to + count + at) = bounds.u_most;
     *real_vectors(to + 2 * count + at) = bounds.v_least;
     *real_vectors(to + 3 * count + at) = bounds.v_most;
-    *real_vectors(to + 4 * count + at) = bounds.distance;
-    for (int lane = 0; lane < LANES; ++lane) {
-        const float play = play_of(lane_of(bounds.distance, lane), lane_of(bounds.reach, lane));
-        ranges[at + lane] =
-            proxel_range(lane_of(bounds.u_least, lane), lane_of(bounds.u_most, lane), play);
-        ranges[count + at + lane] =
-            proxel_range(lane_of(bounds.v_least, lane), lane_of(bounds.v_most, lane), play);
-    }
+    *int_vectors(ranges + at) = proxel_range(bounds.u_least, bounds.u_most, play);
+    *int_vectors(ranges + count + at) = proxel_range(bounds.v_least, bounds.v_most, play);
 }
 
 __kernel void bound_arcs(const __global float* from, const __global float* to, int count,
-                         __global float* result, __global uint* ranges) {
+                         __global float* result, __global int* ranges) {
     const int at = get_global_id(0) * LANES;
     const Point a = consecutive_points(from, count, at), b = consecutive_points(to, count, at);
+    const Point plane = plane_of(a, b);
     Bounds bounds = no_bounds();
-    bounds.reach = edge_reach(a, b);
-    include_arc(&bounds, a, b, edge_plane(a, b), (int_v)-1);
-    store_bounds(bounds, count, at, result, ranges);
+    include_direction(&bounds, direction_of(a), (int_v)-1);
+    include_direction(&bounds, direction_of(b), (int_v)-1);
+    include_extrema(&bounds, slopes_of(a, b), plane, (int_v)0, (int_v)-1);
+    store_bounds(bounds, play_of(least_moment(a, b, plane, (real_v)1.0f)), count, at, result,
+                 ranges);
 }
 
 __kernel void bound_patches(const __global float* corners, int count, __global float* result,
-                            __global uint* ranges) {
+                            __global int* ranges) {
     const int at = get_global_id(0) * LANES;
-    Point corner[CORNERS], planes[CORNERS];
-    for (int k = 0; k < CORNERS; ++k)
+    Point corner[CORNERS], direction[CORNERS], planes[CORNERS];
+    for (int k = 0; k < CORNERS; ++k) {
         corner[k] = consecutive_points(corners + 3 * k * count, count, at);
-    for (int k = 0; k < CORNERS; ++k)
-        planes[k] = edge_plane(corner[k], corner[(k + 1) % CORNERS]);
-    store_bounds(clipped_bounds(corner, planes), count, at, result, ranges);
+        direction[k] = direction_of(corner[k]);
+    }
+    real_v moment = 1.0f;
+    for (int k = 0; k < CORNERS; ++k) {
+        planes[k] = plane_of(corner[k], corner[(k + 1) % CORNERS]);
+        moment = least_moment(corner[k], corner[(k + 1) % CORNERS], planes[k], moment);
+    }
+    store_bounds(clipped_bounds(corner, direction, planes), play_of(moment), count, at, result,
+                 ranges);
 }

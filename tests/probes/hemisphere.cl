@@ -2,6 +2,10 @@
 #include "hemisphere.clh"
 #include "patches.clh"
 
+static Point plane_of(Point p, Point q) {
+    return edge_plane(p, q, edge_reach(sqrt(dot_v(p, p)), sqrt(dot_v(q, q))));
+}
+
 static void store_points(Point point, int stride, int at, __global float* to) {
     *real_vectors(to + at) = point.x;
     *real_vectors(to + stride + at) = point.y;
@@ -11,7 +15,7 @@ static void store_points(Point point, int stride, int at, __global float* to) {
 __kernel void edge_planes(const __global float* from, const __global float* to, int count,
                           __global float* planes) {
     const int at = get_global_id(0) * LANES;
-    store_points(edge_plane(consecutive_points(from, count, at), consecutive_points(to, count, at)),
+    store_points(plane_of(consecutive_points(from, count, at), consecutive_points(to, count, at)),
                  count, at, planes);
 }
 
@@ -27,8 +31,7 @@ __kernel void claims(const __global Shot* shot, const __global int* corners,
             shot, relative_to(shot, consecutive_corners(corners + 3 * k * count, count, at)));
     int_v outside = 0;
     for (int k = 0; k < CORNERS; ++k) {
-        const Point p = corner[k], q = corner[(k + 1) % CORNERS];
-        const Point plane = scaled_v(1.0f / edge_reach(p, q), edge_plane(p, q));
+        const Point plane = plane_of(corner[k], corner[(k + 1) % CORNERS]);
         const real_v along_u = fma(plane.x, x.x, (real_v)kEdgeMargin);
         outside |= as_int_v(fma(plane.z, x.z, fma(plane.y, x.y, along_u)));
     }

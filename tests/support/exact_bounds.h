@@ -102,7 +102,7 @@ inline Excess excess(std::uint32_t range, const Interval& interval, std::uint32_
 
 /// What a probe of bounds.cl found: one rectangle an arc, or a patch.
 struct DeviceBounds {
-    std::vector<float> values;          // [u least, u most, v least, v most, distance][count]
+    std::vector<float> values;          // [u least, u most, v least, v most][count]
     std::vector<std::uint32_t> ranges;  // [columns, rows][count]
 };
 
