@@ -1,6 +1,6 @@
 // Sec. 1.5.1: elimination of trivially invisible patches. Each PE tests the patches it manages,
 // pe * depth and on, LANES at a time, and stacks those among which one may be visible, in their
-// order.
+// order. Of most clusters all or none are, which needs no look at each.
 #include "patches.clh"
 #include "progress.clh"
 
@@ -11,11 +11,15 @@ static int_v is_before(real_v height, real_v squared) {
            less_v(squared * (kPlaneMargin * kPlaneMargin), sure * sure);
 }
 
-// Does not lie in the shooter's plane, faces the shooter, and has a corner in front of it. Any
-// corner may show on which side of a plane the patch is: the nearest one errs least.
-static int_v potentially_visible(const __global Shot* shot, const __global int* corners,
-                                 const __global float* normals, const __global int* planes,
-                                 int stride, int patch) {
+static int_v in_plane_of(const __global Shot* shot, const __global int* planes, int patch) {
+    const int own = shot->plane;
+    return own < 0 ? (int_v)0 : equal_v(load_v(patch, planes), (int_v)own);
+}
+
+// Faces the shooter, and has a corner in front of it. Any corner may show on which side of a plane
+// the patch is: the nearest one errs least.
+static int_v faces_from_in_front(const __global Shot* shot, const __global int* corners,
+                                 const __global float* normals, int stride, int patch) {
     const Point normal = consecutive_points(normals, stride, patch);
     Point corner[CORNERS];
     relative_corners(shot, corners, stride, patch, corner);
@@ -25,25 +29,54 @@ static int_v potentially_visible(const __global Shot* shot, const __global int* 
         facing |= is_before(-dot_v(normal, corner[k]), squared);
         in_front |= is_before(dot_axis(shot->normal, corner[k]), squared);
     }
-    const int own = shot->plane;
-    const int_v coplanar = own < 0 ? (int_v)0 : equal_v(load_v(patch, planes), (int_v)own);
-    return facing & in_front & ~coplanar;
+    return facing & in_front;
 }
 
-__kernel void cull_patches(const __global Shot* shot, const __global int* corners,
-                           const __global float* normals, const __global int* planes,
-                           int stride, int depth,
+// What of a cluster's patches is_before a plane, all corners of which lie from `least` to `most`
+// above it: none, some, or all. kPlaneMargin of the scene's diagonal is 1.2e-6, and what rounding
+// does to the two is less.
+#define kClusterMargin 4e-6f
+#define kNone 0
+#define kSome 1
+#define kAll 2
+static int share_before(float least, float most) {
+    return least > kClusterMargin ? kAll : most < -kClusterMargin ? kNone : kSome;
+}
+
+static int share_visible(const __global Shot* shot, const __global Cluster* cluster) {
+    const float3 axis = vload3(0, cluster->axis);
+    const float3 origin =
+        kGridStep * convert_float3((int3)(shot->origin[0], shot->origin[1], shot->origin[2]));
+    const float3 centre = vload3(0, cluster->centre) - origin;
+    const float facing = -dot(axis, centre);
+    const float3 half_size = vload3(0, cluster->half_size);
+    const float facing_by =
+        cluster->thickness + cluster->spread * (length(centre) + length(half_size));
+    const float3 upwards = vload3(0, shot->normal);
+    const float above = dot(upwards, centre), above_by = dot(fabs(upwards), half_size);
+    return min(share_before(facing - facing_by, facing + facing_by),
+               share_before(above - above_by, above + above_by));
+}
+
+__kernel void cull_patches(const __global Shot* shot, const __global Cluster* clusters,
+                           const __global int* corners, const __global float* normals,
+                           const __global int* planes, int stride, int depth,
                            __global Level* stack, __global int* stack_height) {
     if (!is_projecting(shot)) return;
     const int pe = get_global_id(0);
     const int end = min((pe + 1) * depth, stride);
     __global Level* top = stack + pe * (depth / LANES);
     int height = 0;
-    for (int patch = pe * depth; patch < end; patch += LANES) {
-        const Level level = {
-            patch,
-            bits_of(potentially_visible(shot, corners, normals, planes, stride, patch))};
-        if (level.visible != 0) top[height++] = level;
+    for (int first = pe * depth; first < end; first += kClusterPatches) {
+        const int share = share_visible(shot, clusters + first / kClusterPatches);
+        if (share == kNone) continue;
+        for (int patch = first; patch < first + kClusterPatches; patch += LANES) {
+            int_v visible = ~in_plane_of(shot, planes, patch);
+            if (share == kSome && any_v(visible))
+                visible &= faces_from_in_front(shot, corners, normals, stride, patch);
+            const Level level = {patch, bits_of(visible)};
+            if (level.visible != 0) top[height++] = level;
+        }
     }
     stack_height[pe] = height;
 }

@@ -75,9 +75,35 @@ static void store_projection(__global Projection* to, int patch, int lane,
     to->rows = int_lane_of(from->rows, lane);
 }
 
-// No proxel's centre lies between the empty range's ends, which is 1.
+// Whether a proxel lies inside all arcs, by the operations of project_patches.
+static int_v claims(const Projections* of, int_v column, int_v row) {
+    const int_v a = centre_numerator(column), b = centre_numerator(row);
+    const real_v u = to_real_v(a) * (1.0f / RESOLUTION), v = to_real_v(b) * (1.0f / RESOLUTION);
+    const real_v root = root_at(a, b);
+    int_v least = INT_MAX;
+    for (int k = 0; k < CORNERS; ++k) {
+        const Point plane = of->planes[k];
+        const real_v linear = fma(plane.y, v, fma(plane.x, u, (real_v)kEdgeMargin));
+        least = min(least, as_int_v(fma(plane.z, root, linear)));
+    }
+    return at_least_v(least, (int_v)0) & less_v((real_v)0.0f, root);
+}
+
+// Whether the patch may own a proxel: its rectangle has some (the empty range is 1) and, where they
+// are no more than 2 x 2, one lies inside the outline. In a scene of a million patches, four of five
+// that the shooter might see lie between the proxels.
 static int_v has_proxels(const Projections* of) {
-    return ~equal_v(of->columns, (int_v)1) & ~equal_v(of->rows, (int_v)1);
+    const int_v some = ~equal_v(of->columns, (int_v)1) & ~equal_v(of->rows, (int_v)1);
+#ifdef EVALUATE_INCREMENTAL
+    return some;
+#else
+    const int_v left = of->columns & 0xffff, right = of->columns >> 16;
+    const int_v top = of->rows & 0xffff, bottom = of->rows >> 16;
+    const int_v few = at_least_v((int_v)1, right - left) & at_least_v((int_v)1, bottom - top);
+    if (!any_v(some & few)) return some;
+    return some & (~few | claims(of, left, top) | claims(of, right, top) |
+                   claims(of, left, bottom) | claims(of, right, bottom));
+#endif
 }
 
 __kernel void set_up_projection(const __global Shot* shot, const __global int* corners,
@@ -99,7 +125,7 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
         turn_corners(shot, corner);
         Projections of;
         set_up_outline(corner, &of);
-        const int kept = level->visible & bits_of(has_proxels(&of));
+        int kept = level->visible & bits_of(has_proxels(&of));
         if (kept == 0) continue;
 #ifdef DISTANCE_CONSTANT
         Point centre = corner[0];
@@ -108,8 +134,7 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
 #else
         of.depth = depth_plane(shot, normal, height);
 #endif
-        for (int lane = 0; lane < LANES; ++lane)
-            if ((kept >> lane & 1) != 0) store_projection(to++, patch, lane, &of);
+        for (; kept != 0; kept &= kept - 1) store_projection(to++, patch, lowest_bit(kept), &of);
     }
     projection_count[pe] = to - (projections + pe * depth);
 }

@@ -73,6 +73,14 @@ typedef struct {
     uint32_t repeated_shots;  // by known rows
 } Shot;
 
+// kClusterPatches consecutive patches: the box around their corners; the mean of their normals, how
+// far a normal is from it, and how far a corner is from the box's centre along it.
+#define kClusterPatches 64
+typedef struct {
+    float centre[3], half_size[3];
+    float axis[3], spread, thickness;
+} Cluster;
+
 // A level of a PE's stack (sec. 1.5.1): consecutive patches, one a lane, from `patch` on. `visible`
 // has a bit for each that may be seen.
 typedef struct {
@@ -109,6 +117,7 @@ typedef struct {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 8);
 static_assert(sizeof(Shot) == 124);
+static_assert(sizeof(Cluster) == 44);
 static_assert(sizeof(Level) == 8);
 static_assert(sizeof(Projection) == 72);
 }  // namespace hemirad::device

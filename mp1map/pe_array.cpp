@@ -5,7 +5,8 @@
 namespace mp1map {
 namespace {
 
-constexpr std::uint32_t kCpuTile = 64;        // 32 KiB of depth and owner: fits a first-level cache
+constexpr std::uint32_t kCpuTile =
+    32;  // 12 KiB of roots, depth and owner stay in a first-level cache
 constexpr std::uint32_t kBytesPerProxel = 8;  // depth and owner
 constexpr std::uint32_t kBytesPerPatch = 80;  // projection parameters, and room on the X-net
 constexpr std::uint32_t kSpareBytes = 2048;   // that drivers take for themselves

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "errors.h"
 #include "kernels/shared.h"
@@ -77,7 +78,60 @@ void store_polygons(PatchArrays& arrays, const Mesh& mesh, const Polygons& polyg
     }
 }
 
+glm::dvec3 corner_of(const PatchArrays& arrays, std::size_t patch, std::size_t k) {
+    const std::int32_t* const at = arrays.corners.data() + 3 * k * arrays.stride + patch;
+    return double{kGridStep} * glm::dvec3(at[0], at[arrays.stride], at[2 * arrays.stride]);
+}
+
+glm::dvec3 normal_of(const PatchArrays& arrays, std::size_t patch) {
+    const float* const at = arrays.normals.data() + patch;
+    return {at[0], at[arrays.stride], at[2 * arrays.stride]};
+}
+
+device::Cluster cluster_of(const PatchArrays& arrays, std::size_t first) {
+    constexpr double kRounding = 1e-6;
+    Extent extent{corner_of(arrays, first, 0), corner_of(arrays, first, 0)};
+    glm::dvec3 axis(0);
+    const auto for_each_corner = [&](const auto& visit) {
+        for (std::size_t patch = first; patch < first + kClusterPatches; ++patch)
+            for (std::size_t k = 0; k < arrays.corner_count; ++k)
+                visit(corner_of(arrays, patch, k));
+    };
+    for_each_corner([&](const glm::dvec3& corner) {
+        extent = {glm::min(extent.least, corner), glm::max(extent.most, corner)};
+    });
+    for (std::size_t patch = first; patch < first + kClusterPatches; ++patch)
+        axis += normal_of(arrays, patch);
+    axis = glm::length(axis) > 0 ? glm::normalize(axis) : normal_of(arrays, first);
+
+    const glm::dvec3 centre = 0.5 * (extent.least + extent.most);
+    double thickness = 0, spread = 0;
+    for_each_corner([&](const glm::dvec3& corner) {
+        thickness = std::max(thickness, std::abs(glm::dot(axis, corner - centre)));
+    });
+    for (std::size_t patch = first; patch < first + kClusterPatches; ++patch)
+        spread = std::max(spread, glm::distance(normal_of(arrays, patch), axis));
+
+    device::Cluster cluster{};
+    for (int i = 0; i < 3; ++i) {
+        cluster.centre[i] = static_cast<float>(centre[i]);
+        cluster.half_size[i] =
+            static_cast<float>(0.5 * (extent.most[i] - extent.least[i]) + kRounding);
+        cluster.axis[i] = static_cast<float>(axis[i]);
+    }
+    cluster.thickness = static_cast<float>(thickness + kRounding);
+    cluster.spread = static_cast<float>(spread + kRounding);
+    return cluster;
+}
+
 }  // namespace
+
+std::vector<device::Cluster> clusters_of(const PatchArrays& arrays) {
+    std::vector<device::Cluster> clusters;
+    for (std::size_t first = 0; first < arrays.stride; first += kClusterPatches)
+        clusters.push_back(cluster_of(arrays, first));
+    return clusters;
+}
 
 PatchArrays patch_arrays(const Mesh& mesh) {
     const Extent extent = extent_of(mesh);

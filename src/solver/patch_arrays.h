@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "kernels/shared.h"
 #include "scene/mesh.h"
 
 namespace hemirad {
@@ -30,6 +31,10 @@ struct ShooterArrays {
 /// The power of two that brings a mesh's coordinates to about 1: no bit of a result changes where a
 /// scene is scaled by one, and squares are neither too large nor too small for floats.
 double unit_scale(const Mesh& mesh);
+
+/// Boxes and cones of consecutive patches, in the order of theirs; of normalised coordinates, large
+/// enough for what their own rounding does.
+std::vector<device::Cluster> clusters_of(const PatchArrays& arrays);
 
 /// Throws InputError where the scene's extent cannot be normalised.
 PatchArrays patch_arrays(const Mesh& mesh);

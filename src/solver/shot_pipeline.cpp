@@ -11,7 +11,6 @@
 namespace hemirad {
 namespace {
 
-constexpr std::uint32_t kWidestLanes = 16;
 // PEs of the two kernels that one array runs alone. Fixed: kReducePes decides the order in which
 // choose_shooter adds the blocks' unshot fluxes.
 constexpr std::uint32_t kPrefixPes = 64, kReducePes = 64;
@@ -27,9 +26,9 @@ std::uint32_t count_tiles(std::uint32_t resolution, const mp1map::PeArray& array
     return quotient_up(resolution, array.tile_width) * quotient_up(resolution, array.tile_height);
 }
 
-// Patches a PE manages: whole datapaths of the widest kind, so that stacks do not depend on lanes.
+// Patches a PE manages: whole clusters.
 std::uint32_t stack_depth(std::uint32_t stride, std::uint32_t stack_count) {
-    return quotient_up(quotient_up(stride, stack_count), kWidestLanes) * kWidestLanes;
+    return quotient_up(quotient_up(stride, stack_count), kClusterPatches) * kClusterPatches;
 }
 
 std::uint64_t list_capacity(std::uint64_t stride) {
@@ -158,7 +157,8 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
                                                      static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
-    const std::uint64_t geometry = stride * 4 * (3 * corner_count + 5);
+    const std::uint64_t geometry =
+        stride * 4 * (3 * corner_count + 5) + stride / kClusterPatches * sizeof(device::Cluster);
     const std::uint64_t shooter_stride =
         std::uint64_t{quotient_up(shooters, kReduceBlock)} * kReduceBlock;
     const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride) + 4 * stride;
@@ -200,6 +200,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     require_countable(disk_proxels_, resolution_, samples_);
     build_kernels(device, settings, patches.corner_count, !shooters.first_patch.empty());
     shot_ = acu_.plural(std::vector{first_shot()});
+    clusters_ = acu_.plural(clusters_of(patches));
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
     planes_ = acu_.plural(patches.planes);
@@ -268,6 +269,8 @@ void ShotPipeline::load_near_pairs(const NearPairs& pairs) {
 }
 
 void ShotPipeline::load(const PatchArrays& patches) {
+    const auto clusters = clusters_of(patches);
+    acu_.load(clusters_, std::span(clusters));
     acu_.load(corners_, std::span(patches.corners));
     acu_.load(normals_, std::span(patches.normals));
     acu_.load(planes_, std::span(patches.planes));
@@ -287,7 +290,7 @@ void ShotPipeline::aim_hemisphere() {
 }
 
 void ShotPipeline::cull_patches() {
-    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, corners_, normals_, planes_,
+    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, clusters_, corners_, normals_, planes_,
                std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
 }
 

@@ -152,6 +152,7 @@ class ShotPipeline {
     std::vector<std::int32_t> samples_;  // [shooter]
 
     mp1map::Plural<device::Shot> shot_;
+    mp1map::Plural<device::Cluster> clusters_;
     mp1map::Plural<std::int32_t> corners_, planes_;
     mp1map::Plural<float> normals_, roots_;
     // The patches' own where each shoots for itself.

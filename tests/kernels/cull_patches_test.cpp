@@ -50,9 +50,9 @@ StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
     KernelRun run("cull_patches", options);
     auto stack = run.plural(std::vector<device::Level>(stacks.slots() / shape.lanes));
     auto heights = run.plural(std::vector<std::int32_t>(stacks.count(), -1));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(arrays.corners),
-              run.plural(arrays.normals), run.plural(arrays.planes), std::int32_t(arrays.stride),
-              std::int32_t(stacks.depth), stack, heights);
+    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(clusters_of(arrays)),
+              run.plural(arrays.corners), run.plural(arrays.normals), run.plural(arrays.planes),
+              std::int32_t(arrays.stride), std::int32_t(stacks.depth), stack, heights);
 
     const auto levels = run.acu().unload(stack);
     const auto height = run.acu().unload(heights);
@@ -76,6 +76,46 @@ TEST_P(CullPatches, VisiblePatchesLieOnTopOfTheStackInTheirOrder) {
         const auto stacks = stacks_after(shot, arrays, GetParam());
 
         EXPECT_EQ(stacks, expected_stacks(shot, arrays, Stacks(GetParam(), arrays.stride)));
+    }
+}
+
+// Walls of a grid: most clusters lie in one plane, some reach over two.
+PatchArrays gridded_walls(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> inside(-0.9, 0.9);
+    std::vector<Polygon> patches;
+    for (int wall = 0; wall < 12; ++wall) {
+        const glm::dvec3 corner(inside(random), inside(random), inside(random));
+        const auto u = glm::normalize(glm::dvec3(inside(random), inside(random), inside(random)));
+        const auto v = glm::normalize(glm::cross(u, glm::dvec3(inside(random), 1, 0.3)));
+        for (int i = 0; i < 15; ++i)
+            for (int k = 0; k < 15; ++k)
+                patches.push_back(
+                    square(corner + 0.05 * (double(i) * u + double(k) * v), u, v, 0.05));
+    }
+    return patch_arrays(mesh_of(patches));
+}
+
+TEST_P(CullPatches, WhatIsSaidOfClustersHoldsForTheirPatches) {
+    const auto arrays = gridded_walls(12);
+    std::mt19937 random(13);
+    std::uniform_real_distribution<double> any(-0.8, 0.8);
+    for (int i = 0; i < 20; ++i) {
+        auto shot = shot_from({any(random), any(random), any(random)},
+                              {any(random), any(random), any(random)});
+        if (i % 2 == 0) {  // from the middle of a patch, along its normal: its wall is at the verge
+            shot.patch = static_cast<std::int32_t>(i * arrays.patch_count / 20);
+            const auto patch = static_cast<std::size_t>(shot.patch);
+            const auto normal = normal_of(arrays, patch);
+            shot = shot_from(
+                0.5 * (exact(corner_of(arrays, patch, 0)) + exact(corner_of(arrays, patch, 2))),
+                {normal.x, normal.y, normal.z});
+        }
+
+        const auto stacks = stacks_after(shot, arrays, GetParam());
+
+        ASSERT_EQ(stacks, expected_stacks(shot, arrays, Stacks(GetParam(), arrays.stride)))
+            << "shot " << i;
     }
 }
 

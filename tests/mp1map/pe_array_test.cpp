@@ -38,9 +38,9 @@ std::string refusal(const DeviceSummary& device, const PeArrayRequest& request) 
 TEST(PeArray, ACpuGetsFewPesOfItsNativeWidthAndATileThatFitsItsCache) {
     const auto array = fit_pe_array(cpu(), {});
 
-    EXPECT_EQ(array.description(), "4x1 PEs, 16 lanes, tile 64x64");
-    EXPECT_EQ(array.layer_count(), 64u);
-    EXPECT_EQ(array.bytes_per_pe(), 8192u);
+    EXPECT_EQ(array.description(), "2x1 PEs, 16 lanes, tile 32x32");
+    EXPECT_EQ(array.layer_count(), 32u);
+    EXPECT_EQ(array.bytes_per_pe(), 4096u);
 }
 
 TEST(PeArray, LanesAreTheWidestThatTheCpuHas) {
@@ -52,7 +52,7 @@ TEST(PeArray, LanesAreTheWidestThatTheCpuHas) {
 
 TEST(PeArray, AnAreaOfACpuIsOneRowOfATileWhateverItsLanes) {
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
-        EXPECT_EQ(fit_pe_array(cpu(lanes), {}).area_width(), 64u);
+        EXPECT_EQ(fit_pe_array(cpu(lanes), {}).area_width(), 32u);
 }
 
 TEST(PeArray, AGpuGetsManyPesOfOneLane) {
@@ -97,7 +97,7 @@ TEST(PeArray, ATileIsAtLeastAnArea) {
     const auto array = fit_pe_array(cpu(), request);
 
     EXPECT_EQ(array.tile_width, 256u);
-    EXPECT_EQ(array.tile_height, 64u);
+    EXPECT_EQ(array.tile_height, 32u);
 }
 
 TEST(PeArray, ThereIsAtLeastOneArrayToDealPatchesTo) {

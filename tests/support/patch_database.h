@@ -84,7 +84,8 @@ struct Stacks {
     Stacks(const Shape& shape, std::uint32_t stride)
         : grid{2, std::size_t{shape.width} * shape.height} {
         const auto pes = static_cast<std::uint32_t>(count());
-        depth = ((stride + pes - 1) / pes + 15) / 16 * 16;  // whole datapaths of the widest kind
+        depth =
+            ((stride + pes - 1) / pes + kClusterPatches - 1) / kClusterPatches * kClusterPatches;
     }
     std::size_t count() const { return grid.groups * grid.local; }
     std::size_t slots() const { return count() * depth; }
