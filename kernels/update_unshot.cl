@@ -66,6 +66,7 @@ __kernel void update_unshot(const __global Shot* shot, const __global float* sho
                 energy = fma((real_v)band_weight[band], left, energy);
                 sums[band][step % ACCUMULATORS] += left;
             }
+            if (!any_v(less_v((real_v)summary.energy, energy))) continue;
             for (int lane = 0; lane < LANES; ++lane)
                 if (lane_of(energy, lane) > summary.energy) {
                     summary.energy = lane_of(energy, lane);

@@ -104,8 +104,7 @@ TEST_P(CullPatches, WhatIsSaidOfClustersHoldsForTheirPatches) {
         auto shot = shot_from({any(random), any(random), any(random)},
                               {any(random), any(random), any(random)});
         if (i % 2 == 0) {  // from the middle of a patch, along its normal: its wall is at the verge
-            shot.patch = static_cast<std::int32_t>(i * arrays.patch_count / 20);
-            const auto patch = static_cast<std::size_t>(shot.patch);
+            const std::size_t patch = static_cast<std::size_t>(i) * arrays.patch_count / 20;
             const auto normal = normal_of(arrays, patch);
             shot = shot_from(
                 0.5 * (exact(corner_of(arrays, patch, 0)) + exact(corner_of(arrays, patch, 2))),
