@@ -91,10 +91,11 @@ static int_v claims(const Projections* of, int_v column, int_v row) {
 
 // Whether the patch may own a proxel: its rectangle has some (the empty range is 1) and, where they
 // are no more than 2 x 2, one lies inside the outline. In a scene of a million patches, four of five
-// that the shooter might see lie between the proxels.
+// that the shooter might see lie between the proxels. The paper's machine projects them; so it is
+// where its areas are counted, and where further areas have other bits than these.
 static int_v has_proxels(const Projections* of) {
     const int_v some = ~equal_v(of->columns, (int_v)1) & ~equal_v(of->rows, (int_v)1);
-#ifdef EVALUATE_INCREMENTAL
+#if defined(EVALUATE_INCREMENTAL) || defined(COUNT_ACTIVITY)
     return some;
 #else
     const int_v left = of->columns & 0xffff, right = of->columns >> 16;

@@ -68,8 +68,7 @@ __kernel void update_radiosity(const __global Shot* shot, const __global float* 
 #endif
                 *real_vectors(row + patch) = form_factor;
             }
-            if (any_v(form_factor != 0.0f))  // nothing added changes no bit
-                receive(form_factor, shot_flux, stride, patch, received, received_rest);
+            receive(form_factor, shot_flux, stride, patch, received, received_rest);
         }
     if (owned != 0) atomic_add(proxel_count + stride + 2, owned);
 }
