@@ -1,5 +1,6 @@
 // What is still unshot, against shots and seconds, by the settings of `hemirad solve --quality
-// draft`. `bench_convergence SCENE`; seconds are those of the solve, kernels built beforehand.
+// draft`. `bench_convergence SCENE`; seconds are those of the solve. PoCL compiles kernels at their
+// first launch, so it is the second run that counts.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <chrono>
