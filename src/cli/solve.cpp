@@ -59,8 +59,11 @@ void require_memory(const Work& work, const SolveOptions& options,
     const auto resolution = options.target_error
                                 ? accuracy_at(first_step(*options.target_error)).resolution
                                 : options.solver.resolution;
-    const auto needed = device_bytes(work.mesh, resolution, options.solver.form_factor,
-                                     usable_row_bytes(options.solver.row_bytes, device), array);
+    const auto needed =
+        device_bytes(work.mesh, resolution, options.solver.form_factor,
+                     usable_row_bytes(options.solver.row_bytes, work.mesh.shooter_count(),
+                                      work.mesh.patches.size(), device),
+                     array);
     if (needed <= device.global_memory) return;
     throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
                      " has " + bytes_text(device.global_memory) +

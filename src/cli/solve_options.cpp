@@ -123,7 +123,9 @@ void add_variant_options(CLI::App& command, Variants& variants) {
 void add_machine_options(CLI::App& command, SolveOptions& options) {
     add_array_options(command, options.device, options.compute_units, options.solver.pe_array);
     add_variant_options(command, options.solver.variants);
-    add_value(command, {"--row-memory", "MIB", "for form factors of those who shoot again [1024]"},
+    add_value(command,
+              {"--row-memory", "MIB",
+               "for form factors of those who shoot again [1024, or 0 for large meshes]"},
               [&](const OptionValue& value) {
                   options.solver.row_bytes = whole_number(value, 0, 1u << 24) << 20;
               });

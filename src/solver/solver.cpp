@@ -11,6 +11,9 @@ constexpr double kSecondsBetweenLooks = 0.1;
 constexpr std::uint64_t kMostPassesBetweenLooks = 4096;
 // Shots by known rows between two passes that would project; beyond, these cost little.
 constexpr std::uint64_t kMostRepeats = 64;
+constexpr std::uint64_t kDefaultRowBytes = std::uint64_t{1} << 30;
+// Where fewer have a row, the rows spare next to nothing and cost more than all patches do.
+constexpr std::uint64_t kMostShootersPerRow = 100;
 // The device counts them in 32 bits.
 constexpr std::uint64_t kMostShots = std::numeric_limits<std::uint32_t>::max();
 
@@ -74,7 +77,8 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
     result.form_factor = settings.form_factor;
     set_shooter_sampling(result, mesh, settings);
     result.tolerance = settings.tolerance;
-    result.row_bytes = usable_row_bytes(settings.row_bytes, device);
+    result.row_bytes =
+        usable_row_bytes(settings.row_bytes, mesh.shooter_count(), mesh.patches.size(), device);
     result.pe_array = settings.pe_array;
     result.variants = settings.variants;
     result.kernels_dir = settings.kernels_dir;
@@ -93,8 +97,12 @@ ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSe
 
 }  // namespace
 
-std::uint64_t usable_row_bytes(std::uint64_t wanted, const mp1map::DeviceSummary& device) {
-    return std::min({wanted, device.global_memory / 4, device.max_allocation});
+std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,
+                               std::uint64_t patches, const mp1map::DeviceSummary& device) {
+    const std::uint64_t bytes = std::min(
+        {wanted.value_or(kDefaultRowBytes), device.global_memory / 4, device.max_allocation});
+    const bool worthwhile = bytes * kMostShootersPerRow >= shooters * 4 * patches;
+    return wanted || worthwhile ? bytes : 0;
 }
 
 ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& settings,

@@ -34,15 +34,18 @@ struct SolverSettings {
     std::uint64_t stop_every = 0;
     /// For rows of form factors, see usable_row_bytes(): a shooter whose row is kept need not look
     /// again.
-    std::uint64_t row_bytes = std::uint64_t{1} << 30;
+    std::optional<std::uint64_t> row_bytes = {};
     mp1map::PeArrayRequest pe_array = {};
     Variants variants = {};
     std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
     bool timed = false;                                     ///< keep the seconds of each kernel
 };
 
-/// What a device can spare of the bytes asked for: up to a quarter of its memory.
-std::uint64_t usable_row_bytes(std::uint64_t wanted, const mp1map::DeviceSummary& device);
+/// What a device can spare of the bytes asked for: up to a quarter of its memory. By default 1 GiB
+/// is asked for, and nothing is used where it holds the rows of fewer than one shooter in a
+/// hundred: a large mesh takes what its patches take.
+std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,
+                               std::uint64_t patches, const mp1map::DeviceSummary& device);
 
 struct Progress {
     std::uint64_t shots = 0;

@@ -49,6 +49,13 @@ void expect_equal(const Solved& a, const Solved& b) {
     }
 }
 
+mp1map::DeviceSummary roomy_device() {
+    mp1map::DeviceSummary device{};
+    device.global_memory = std::uint64_t{64} << 30;
+    device.max_allocation = std::uint64_t{16} << 30;
+    return device;
+}
+
 class KnownRows : public testing::TestWithParam<FormFactorMode> {
   protected:
     SolverSettings how() const {
@@ -106,6 +113,35 @@ TEST_P(KnownRows, GoOnOverPauses) {
     how.stop_every = 7;
 
     expect_equal(solved(mesh, how, kAnyBytes), whole);
+}
+
+TEST(RowBytes, AreAQuarterOfTheDeviceAtMost) {
+    auto device = roomy_device();
+    EXPECT_EQ(usable_row_bytes({}, 1000, 1000, device), std::uint64_t{1} << 30);
+    EXPECT_EQ(usable_row_bytes(std::uint64_t{20} << 30, 1000, 1000, device),
+              std::uint64_t{16} << 30);
+    device.max_allocation = std::uint64_t{3} << 30;
+    EXPECT_EQ(usable_row_bytes(std::uint64_t{20} << 30, 1000, 1000, device),
+              std::uint64_t{3} << 30);
+}
+
+// 1 GiB holds 2684 rows of 100,000 patches, 268 of a million.
+TEST(RowBytes, AreNoneByDefaultWhereFewerThanOneShooterInAHundredHasARow) {
+    const auto device = roomy_device();
+    constexpr std::uint64_t kGibibyte = std::uint64_t{1} << 30;
+    EXPECT_EQ(usable_row_bytes({}, 268'000, 100'000, device), kGibibyte);
+    EXPECT_EQ(usable_row_bytes({}, 269'000, 100'000, device), 0u);
+    EXPECT_EQ(usable_row_bytes({}, 26'000, 1'000'000, device), kGibibyte);
+    EXPECT_EQ(usable_row_bytes(kGibibyte, 1'000'000, 1'000'000, device), kGibibyte);
+}
+
+TEST(RowBytes, LeaveAMillionPatchesWithin300BytesEach) {
+    constexpr std::uint32_t kPatches = 1'000'000;
+    const auto device = roomy_device();
+    const auto bytes = estimated_device_bytes(
+        kPatches, kPatches, 4, 3, 512, FormFactorMode::analytic,
+        usable_row_bytes({}, kPatches, kPatches, device), {4, 1, 16, 64, 64});
+    EXPECT_LE(bytes, std::uint64_t{300} * kPatches);
 }
 
 }  // namespace
