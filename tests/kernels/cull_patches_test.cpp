@@ -79,15 +79,23 @@ TEST_P(CullPatches, VisiblePatchesLieOnTopOfTheStackInTheirOrder) {
     }
 }
 
-// Walls of a grid: most clusters lie in one plane, some reach over two.
+constexpr double kStep = 0.05;
+
+// Walls of a grid, every second one a step before the last: most clusters lie in one plane, some
+// reach over two, parallel or not.
 PatchArrays gridded_walls(unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> inside(-0.9, 0.9);
     std::vector<Polygon> patches;
+    glm::dvec3 corner{}, u{}, v{};
     for (int wall = 0; wall < 12; ++wall) {
-        const glm::dvec3 corner(inside(random), inside(random), inside(random));
-        const auto u = glm::normalize(glm::dvec3(inside(random), inside(random), inside(random)));
-        const auto v = glm::normalize(glm::cross(u, glm::dvec3(inside(random), 1, 0.3)));
+        if (wall % 2 == 0) {
+            corner = {inside(random), inside(random), inside(random)};
+            u = glm::normalize(glm::dvec3(inside(random), inside(random), inside(random)));
+            v = glm::normalize(glm::cross(u, glm::dvec3(inside(random), 1, 0.3)));
+        } else {
+            corner += kStep * glm::cross(u, v);
+        }
         for (int i = 0; i < 15; ++i)
             for (int k = 0; k < 15; ++k)
                 patches.push_back(
@@ -103,12 +111,14 @@ TEST_P(CullPatches, WhatIsSaidOfClustersHoldsForTheirPatches) {
     for (int i = 0; i < 20; ++i) {
         auto shot = shot_from({any(random), any(random), any(random)},
                               {any(random), any(random), any(random)});
-        if (i % 2 == 0) {  // from the middle of a patch, along its normal: its wall is at the verge
+        if (i % 2 == 0) {  // from a patch along its normal, or to it from between two walls
             const std::size_t patch = static_cast<std::size_t>(i) * arrays.patch_count / 20;
             const auto normal = normal_of(arrays, patch);
-            shot = shot_from(
-                0.5 * (exact(corner_of(arrays, patch, 0)) + exact(corner_of(arrays, patch, 2))),
-                {normal.x, normal.y, normal.z});
+            const glm::dvec3 n(normal.x, normal.y, normal.z);
+            const auto middle =
+                0.5 * (exact(corner_of(arrays, patch, 0)) + exact(corner_of(arrays, patch, 2)));
+            const double between = 0.4 * kStep * arrays.scale;
+            shot = i % 4 == 0 ? shot_from(middle + between * n, -n) : shot_from(middle, n);
         }
 
         const auto stacks = stacks_after(shot, arrays, GetParam());
