@@ -11,6 +11,7 @@
 #include "lightmap/write_exr.h"
 #include "lightmap/write_preview.h"
 #include "scene/printable.h"
+#include "solver/ambient.h"
 
 namespace hemirad {
 namespace {
@@ -49,6 +50,23 @@ std::string settings_text(const SolveOptions& options) {
     for (const auto& [name, value] : deciding_options(options))
         text += (text.empty() ? "" : " ") + name + " " + value;
     return text;
+}
+
+std::vector<Attribute> attributes_of(const SolveOptions& options, const Solution& solution) {
+    auto attributes = describe(solution, options.quantity);
+    attributes.push_back({"version", std::string(HEMIRAD_VERSION)});
+    attributes.push_back({"scene", options.scene.filename().string()});
+    attributes.push_back({"resolution", double(options.solver.resolution)});
+    attributes.push_back({"shooter_samples", double(options.solver.shooter_samples)});
+    attributes.push_back({"settings", settings_text(options)});
+    return attributes;
+}
+
+void write_lightmap(const SolveOptions& options, const Lightmap& lightmap,
+                    const std::vector<Attribute>& attributes) {
+    check_finite(options.output, lightmap);
+    write_exr(options.output, lightmap, attributes, options.pixels);
+    if (options.preview) write_preview(*options.preview, lightmap);
 }
 
 }  // namespace
@@ -92,15 +110,15 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
     auto lightmap = rasterize(mesh, solution, layout, options.quantity);
     if (error != nullptr)
         lightmap.layers["error"] = rasterize(mesh, *error, layout, options.quantity).values;
-    check_finite(options.output, lightmap);
-    auto attributes = describe(solution, options.quantity);
-    attributes.push_back({"version", std::string(HEMIRAD_VERSION)});
-    attributes.push_back({"scene", options.scene.filename().string()});
-    attributes.push_back({"resolution", double(options.solver.resolution)});
-    attributes.push_back({"shooter_samples", double(options.solver.shooter_samples)});
-    attributes.push_back({"settings", settings_text(options)});
-    write_exr(options.output, lightmap, attributes, options.pixels);
-    if (options.preview) write_preview(*options.preview, lightmap);
+    write_lightmap(options, lightmap, attributes_of(options, solution));
+}
+
+void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
+                           const Solution& solution) {
+    auto attributes = attributes_of(options, solution);
+    attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
+    write_lightmap(options, rasterize(mesh, with_ambient(mesh, solution), layout, options.quantity),
+                   attributes);
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

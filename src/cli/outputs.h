@@ -33,6 +33,10 @@ void check_outputs(const SolveOptions& options);
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error = nullptr);
 
+/// As write_picture(), with_ambient(); the lightmap's header says so.
+void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
+                           const Solution& solution);
+
 /// A warning for each band whose light is so weak that the lightmap's pixels lose digits of all of
 /// it.
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution);

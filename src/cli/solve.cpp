@@ -79,7 +79,7 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
         shot_clock.note(progress);
         display.show(progress.shots, progress.unshot_fraction);
         if (snapshots.due(progress))
-            write_picture(options, work.mesh, work.layout, solver.solution());
+            write_interim_picture(options, work.mesh, work.layout, solver.solution());
         return !interrupts.requested();
     });
 }

@@ -80,7 +80,8 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
     command.add_flag_callback(
         "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
     add_value(command,
-              {"--snapshot-every", "SHOTS|SECONDSs", "write the picture so far, again and again"},
+              {"--snapshot-every", "SHOTS|SECONDSs",
+               "write the picture so far, what is unshot spread evenly"},
               [&](const OptionValue& value) { options.snapshots = snapshot_interval(value); });
 }
 

@@ -483,6 +483,20 @@ class Interrupt(CommandLine):
         self.assertTrue((self.folder / "a.exr").exists())
         self.assertIsNone(process.poll())
 
+    def test_only_interim_pictures_hold_an_ambient_term(self):
+        process = self.start()
+        self.assertIn(b"hemirad.ambient", (self.folder / "a.exr").read_bytes())
+        process.send_signal(signal.SIGINT)
+        process.wait(60)
+        self.assertNotIn(b"hemirad.ambient", (self.folder / "a.exr").read_bytes())
+
+    def test_snapshots_leave_the_final_picture_as_it_is(self):
+        pictures = []
+        for arguments in ((), ("--snapshot-every", "3")):
+            self.assert_done(self.solve("-o", "a.exr", *arguments))
+            pictures.append((self.folder / "a.exr").read_bytes())
+        self.assertEqual(*pictures)
+
     def test_first_one_writes_the_picture_so_far(self):
         process = self.start("--report", "r.json")
         (self.folder / "a.exr").unlink()
