@@ -35,9 +35,11 @@ std::uint64_t list_capacity(std::uint64_t stride) {
     return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
 }
 
-// Rows of form factors that so many bytes hold, 4 bytes a patch; at most one for each patch.
+// Rows of form factors that so many bytes hold, 4 bytes a patch, beside the one of the shot; at most
+// one for each patch.
 std::uint32_t row_capacity(std::uint32_t patches, std::uint64_t stride, std::uint64_t row_bytes) {
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, row_bytes / (4 * stride)));
+    const std::uint64_t rows = std::max<std::uint64_t>(row_bytes / (4 * stride), 1);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, rows - 1));
 }
 
 std::string definition(const char* name, std::uint64_t value) {

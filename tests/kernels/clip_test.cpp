@@ -26,7 +26,8 @@ double least_distance(const Corners& corners) {
     return exact_bounds(points).distance;
 }
 
-Patches random_patches_across_the_horizon(int corner_count, unsigned seed) {
+Patches random_patches_across_the_horizon(int corner_count, unsigned seed,
+                                          double least_distance_kept = 1e-2) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> across(-1, 1), size(0.01, 1.5);
     Patches patches;
@@ -37,7 +38,7 @@ Patches random_patches_across_the_horizon(int corner_count, unsigned seed) {
         for (int k = 0; k < corner_count; ++k) corners.push_back(rounded(polygon.corners[k]));
         const auto below = std::count_if(corners.begin(), corners.end(),
                                          [](const Float3& corner) { return corner[2] < 0; });
-        if (below == corner_count || least_distance(corners) < 1e-2) continue;
+        if (below == corner_count || least_distance(corners) < least_distance_kept) continue;
         ++patches.below_count[below];
         patches.corners.push_back(corners);
     }
@@ -78,6 +79,24 @@ TEST_P(Clip, BoundsHoldThePartAboveTheHorizonAndAreTightToOneProxel) {
             const auto beyond = excess(range, interval, kResolution);
             ASSERT_GE(std::min(beyond.before, beyond.after), 0) << "patch " << i;
             ASSERT_LE(std::max(beyond.before, beyond.after), 1) << "patch " << i;
+        }
+    }
+}
+
+TEST_P(Clip, BoundsAreNeverTooSmallWhereAnEdgeAlmostMeetsTheShooter) {
+    const auto patches = random_patches_across_the_horizon(GetParam(), 112, 1e-5);
+
+    const auto bounds = bounds_of(patches.corners, 16);
+
+    for (std::size_t i = 0; i < kPatches; ++i) {
+        std::vector<glm::dvec3> corners;
+        for (const auto& corner : patches.corners[i]) corners.push_back(exact(corner));
+        const auto expected = exact_bounds(corners);
+        for (const auto& [range, interval] : {std::pair(bounds.ranges[i], expected.u),
+                                              std::pair(bounds.ranges[kPatches + i], expected.v)}) {
+            const auto beyond = excess(range, interval, kResolution);
+            ASSERT_GE(std::min(beyond.before, beyond.after), 0)
+                << "patch " << i << " at " << expected.distance;
         }
     }
 }
