@@ -47,15 +47,16 @@ static void set_up_outline(const Point* corner, Projections* of) {
         distance[k] = sqrt(dot_v(corner[k], corner[k]));
         direction[k] = unit_direction(corner[k], distance[k]);
     }
-    real_v moment = 1.0f;
+    real_v squared = MAXFLOAT, farthest = 0.0f;
     for (int k = 0; k < CORNERS; ++k) {
         const int next = (k + 1) % CORNERS;
-        of->planes[k] =
-            edge_plane(corner[k], corner[next], edge_reach(distance[k], distance[next]));
-        moment = least_moment(corner[k], corner[next], of->planes[k], moment);
+        const real_v reach = edge_reach(distance[k], distance[next]);
+        of->planes[k] = edge_plane(corner[k], corner[next], reach);
+        squared = least_squared(corner[k], corner[next], of->planes[k], reach, squared);
+        farthest = max(farthest, reach);
     }
     const Bounds bounds = clipped_bounds(corner, direction, of->planes);
-    const real_v play = play_of(moment);
+    const real_v play = play_of(farthest, squared);
     of->columns = proxel_range(bounds.u_least, bounds.u_most, play);
     of->rows = proxel_range(bounds.v_least, bounds.v_most, play);
 }

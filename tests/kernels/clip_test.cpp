@@ -101,6 +101,42 @@ TEST_P(Clip, BoundsAreNeverTooSmallWhereAnEdgeAlmostMeetsTheShooter) {
     }
 }
 
+// Triangles of which an edge passes the shooter at 1e-5 to 1e-1.
+std::vector<Corners> triangles_beside_the_shooter(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> across(-1, 1), exponent(-5, -1), length(0, 2);
+    const auto point = [&] { return glm::dvec3(across(random), across(random), across(random)); };
+    std::vector<Corners> triangles;
+    while (triangles.size() < kPatches) {
+        const auto along = glm::normalize(point());
+        const auto foot =
+            std::pow(10.0, exponent(random)) * glm::normalize(glm::cross(along, point()));
+        const Corners corners = {rounded(foot + length(random) * along),
+                                 rounded(foot - length(random) * along), rounded(1.5 * point())};
+        const bool below = std::all_of(corners.begin(), corners.end(),
+                                       [](const Float3& corner) { return corner[2] < 0; });
+        if (!below && least_distance(corners) > 1e-5) triangles.push_back(corners);
+    }
+    return triangles;
+}
+
+TEST(ClipBesideTheShooter, BoundsAreNeverTooSmall) {
+    const auto triangles = triangles_beside_the_shooter(5);
+
+    const auto bounds = bounds_of(triangles, 16);
+
+    for (std::size_t i = 0; i < kPatches; ++i) {
+        std::vector<glm::dvec3> corners;
+        for (const auto& corner : triangles[i]) corners.push_back(exact(corner));
+        const auto expected = exact_bounds(corners);
+        for (const auto& [range, interval] : {std::pair(bounds.ranges[i], expected.u),
+                                              std::pair(bounds.ranges[kPatches + i], expected.v)}) {
+            const auto beyond = excess(range, interval, kResolution);
+            ASSERT_GE(std::min(beyond.before, beyond.after), 0) << "triangle " << i;
+        }
+    }
+}
+
 TEST_P(Clip, BoundsDoNotDependOnTheLanes) {
     const auto patches = random_patches_across_the_horizon(GetParam(), 111).corners;
     const auto wide = bounds_of(patches, 16);

@@ -31,8 +31,9 @@ __kernel void bound_arcs(const __global float* from, const __global float* to, i
     include_direction(&bounds, direction_of(a), (int_v)-1);
     include_direction(&bounds, direction_of(b), (int_v)-1);
     include_extrema(&bounds, slopes_of(a, b), plane, (int_v)0, (int_v)-1);
-    store_bounds(bounds, play_of(least_moment(a, b, plane, (real_v)1.0f)), count, at, result,
-                 ranges);
+    const real_v reach = edge_reach(sqrt(dot_v(a, a)), sqrt(dot_v(b, b)));
+    const real_v squared = least_squared(a, b, plane, reach, (real_v)MAXFLOAT);
+    store_bounds(bounds, play_of(reach, squared), count, at, result, ranges);
 }
 
 __kernel void bound_patches(const __global float* corners, int count, __global float* result,
@@ -43,11 +44,14 @@ __kernel void bound_patches(const __global float* corners, int count, __global f
         corner[k] = consecutive_points(corners + 3 * k * count, count, at);
         direction[k] = direction_of(corner[k]);
     }
-    real_v moment = 1.0f;
+    real_v squared = MAXFLOAT, farthest = 0.0f;
     for (int k = 0; k < CORNERS; ++k) {
-        planes[k] = plane_of(corner[k], corner[(k + 1) % CORNERS]);
-        moment = least_moment(corner[k], corner[(k + 1) % CORNERS], planes[k], moment);
+        const Point p = corner[k], q = corner[(k + 1) % CORNERS];
+        const real_v reach = edge_reach(sqrt(dot_v(p, p)), sqrt(dot_v(q, q)));
+        planes[k] = edge_plane(p, q, reach);
+        squared = least_squared(p, q, planes[k], reach, squared);
+        farthest = max(farthest, reach);
     }
-    store_bounds(clipped_bounds(corner, direction, planes), play_of(moment), count, at, result,
-                 ranges);
+    store_bounds(clipped_bounds(corner, direction, planes), play_of(farthest, squared), count, at,
+                 result, ranges);
 }
