@@ -3,6 +3,7 @@
 // order. Of most clusters all or none are, which needs no look at each.
 #include "patches.clh"
 #include "progress.clh"
+#include "stacks.clh"
 
 // Whether a corner at `squared` distance shows by its `height` that it lies before a plane.
 static int_v is_before(real_v height, real_v squared) {
@@ -63,7 +64,7 @@ __kernel void cull_patches(const __global Shot* shot, const __global Cluster* cl
                            const __global int* planes, int stride, int depth,
                            __global Level* stack, __global int* stack_height) {
     if (!is_projecting(shot)) return;
-    const int pe = get_global_id(0);
+    const int pe = own_stack();
     const int end = min((pe + 1) * depth, stride);
     __global Level* top = stack + pe * (depth / LANES);
     int height = 0;

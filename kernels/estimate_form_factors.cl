@@ -6,6 +6,7 @@
 #include "plane.clh"
 #include "point_to_polygon.clh"
 #include "progress.clh"
+#include "stacks.clh"
 
 // What lies a ten-thousandth before a patch does not hide it: neighbours in one plane differ by
 // rounding.
@@ -54,7 +55,7 @@ __kernel void estimate_form_factors(const __global Shot* shot, const __global in
                                     const __global int* owners, __global int* proxel_count,
                                     __global int* covered_count, __global float* factors) {
     if (!is_projecting(shot)) return;
-    const int pe = get_global_id(0);
+    const int pe = own_stack();
     const __global Level* level = stack + pe * (depth / LANES);
     const __global Level* end = level + stack_height[pe];
     int owned = 0;

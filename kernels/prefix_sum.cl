@@ -1,29 +1,47 @@
-// Turns counts into the places where lists begin: exclusive prefix sum, in place, by one array.
-// More entries than `capacity` halt the shot; the host then enlarges the buffer and repeats it.
+// Turns counts, [PE][tile], into the places where each PE's part of a tile's list begins, in place,
+// and says where each tile's list ends: the lists lie one behind another, tile by tile and PE by PE.
+// By one array. More entries than `capacity` halt the shot; the host then enlarges the buffer and
+// repeats it.
 #include "progress.clh"
-#include "shared.h"
+#include "tiles.clh"
 
 // PoCL 3.1 miscompiles a kernel whose work-items may leave before a barrier, so all of them stay.
-__kernel void prefix_sum(__global Shot* shot, __global int* values, int count, uint capacity) {
-    __local uint sums[PREFIX_PES];
+__kernel void prefix_sum(__global Shot* shot, __global int* restrict counts, int stack_count,
+                         __global int* restrict list_end, uint capacity) {
+    __local ulong sums[PREFIX_PES];
     const int pe = get_local_id(0);
     const bool running = is_projecting(shot);
-    const int share = running ? (count + PREFIX_PES - 1) / PREFIX_PES : 0;
-    const int first = min(pe * share, count), end = min(first + share, count);
-    uint sum = 0;
-    for (int i = first; i < end; ++i) sum = add_sat(sum, (uint)values[i]);
+    const int share = running ? (TILE_COUNT + PREFIX_PES - 1) / PREFIX_PES : 0;
+    const int first = min(pe * share, TILE_COUNT), end = min(first + share, TILE_COUNT);
+    for (int tile = first; tile < end; ++tile) list_end[tile] = 0;
+    for (int stack = 0; stack < stack_count; ++stack)
+        for (int tile = first; tile < end; ++tile)
+            list_end[tile] += counts[stack * TILE_COUNT + tile];
+    ulong sum = 0;
+    for (int tile = first; tile < end; ++tile) sum += list_end[tile];
     sums[pe] = sum;
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // all have read the status by now
 
-    uint before = 0;
-    for (int other = 0; other < pe; ++other) before = add_sat(before, sums[other]);
-    for (int i = first; i < end; ++i) {
-        const int value = values[i];
-        values[i] = before;
-        before = add_sat(before, (uint)value);
+    ulong all = 0, before = 0;
+    for (int other = 0; other < PREFIX_PES; ++other) {
+        before += other < pe ? sums[other] : 0;
+        all += sums[other];
     }
-    if (running && pe == PREFIX_PES - 1) {
-        shot->bin_entries = before;
-        if (before > capacity) shot->status = kBinsFull;
+    if (running && pe == 0) {
+        shot->bin_entries = min(all, (ulong)UINT_MAX);
+        if (all > capacity) shot->status = kBinsFull;
     }
+    if (all > capacity) return;  // behind the last barrier
+
+    for (int tile = first; tile < end; ++tile) {
+        const int of_tile = list_end[tile];
+        list_end[tile] = before;
+        before += of_tile;
+    }
+    for (int stack = 0; stack < stack_count; ++stack)
+        for (int tile = first; tile < end; ++tile) {
+            const int place = list_end[tile];
+            list_end[tile] += counts[stack * TILE_COUNT + tile];
+            counts[stack * TILE_COUNT + tile] = place;
+        }
 }

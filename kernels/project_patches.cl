@@ -12,9 +12,13 @@
 
 // Diffuses patches of the tile's list to the array: one, a batch, or a level of the stacks at a
 // time (BROADCAST_PATCHES).
-static void broadcast(const __global Projection* projections, const __global int* list, int count,
-                      int pe, __local Projection* batch) {
-    for (int k = pe; k < count; k += PE_COUNT) batch[k] = projections[list[k]];
+static void broadcast(const __global Projection* projections,
+                      const __global Rectangle* rectangles, const __global int* list, int count,
+                      int pe, __local Projection* batch, __local Rectangle* batch_rectangles) {
+    for (int k = pe; k < count; k += PE_COUNT) {
+        batch[k] = projections[list[k]];
+        batch_rectangles[k] = rectangles[list[k]];
+    }
 }
 
 // Depth planes are A" u + B" v + C" w; Spencer's constant distance (app. A) comes as A" alone.
@@ -29,17 +33,17 @@ static void broadcast(const __global Projection* projections, const __global int
 // of their bits, as integers, has not. Outside the
 // rectangle it never is: beyond a sharp corner the arcs' margins reach farther than the
 // rectangle's, and which proxels are evaluated there depends on the array.
-static void project(const __local Projection* patch, int tile, int area_column, int pe,
-                    const __global real_v* roots, __local real_v* depth, __local int_v* owner,
+static void project(const __local Projection* patch, const __local Rectangle* of, int tile,
+                    int area_column, int pe, const __global real_v* roots, __local real_v* depth, __local int_v* owner,
                     Activity* activity, Coverage* coverage) {
     const int column = proxel_column(tile, area_column, pe);
-    if (column > last_of(patch->columns) || column + LANES <= first_of(patch->columns)) return;
+    if (column > last_of(of->columns) || column + LANES <= first_of(of->columns)) return;
     const int_v columns = column + LANE_INDEX;
     const real_v u = to_real_v(centre_numerator(columns)) * (1.0f / RESOLUTION);
-    const int_v in_columns = at_least_v(columns, first_of(patch->columns)) &
-                             at_least_v((int_v)last_of(patch->columns), columns);
-    const int first = first_area_row(patch->rows, tile, pe);
-    const int last = last_area_row(patch->rows, tile, pe);
+    const int_v in_columns = at_least_v(columns, first_of(of->columns)) &
+                             at_least_v((int_v)last_of(of->columns), columns);
+    const int first = first_area_row(of->rows, tile, pe);
+    const int last = last_area_row(of->rows, tile, pe);
     const float v_first = row_centre(proxel_row(tile, first, pe));
     real_v edge[CORNERS];
     UNROLLED for (int k = 0; k < CORNERS; ++k)
@@ -48,7 +52,6 @@ static void project(const __local Projection* patch, int tile, int area_column, 
 
     for (int area_row = first; area_row <= last; ++area_row) {
         const int row = proxel_row(tile, area_row, pe);
-        const int in_rows = row >= first_of(patch->rows) && row <= last_of(patch->rows) ? -1 : 0;
         const int at = plural_index(area_row * AREA_COLUMNS + area_column, pe);
         const float v = row_centre(row);
         const real_v root = roots[at], nearest = depth[at];
@@ -58,7 +61,7 @@ static void project(const __local Projection* patch, int tile, int area_column, 
                                                  root)));
             edge[k] = next_linear(edge[k], patch->edge[k][1]);
         }
-        const int_v inside = ~(least >> 31) & in_columns & in_rows;
+        const int_v inside = at_least_v(least, (int_v)0) & in_columns & is_in(row, of->rows);
         const int_v certain = well_inside(least, inside);
         const real_v distance =
             value_at(patch->depth[1], patch->depth[2], depth_linear, v, root);
@@ -84,13 +87,14 @@ static void clear_plane(int pe, int escaped, const __global real_v* roots, __loc
 }
 
 __kernel void project_patches(const __global Shot* shot, const __global real_v* roots,
-                              const __global Projection* projections, const __global int* list_end,
-                              const __global int* lists, int stack_count, int escaped,
-                              __global int* proxel_count, __global int* covered_count,
+                              const __global Projection* projections,
+                              const __global Rectangle* rectangles, const __global int* list_end,
+                              const __global int* lists, int escaped, __global int* proxel_count, __global int* covered_count,
                               __global int_v* owners, __global uint* activity_totals) {
     __local real_v depth[TILE_VECTORS];
     __local int_v owner[TILE_VECTORS];
     __local Projection batch[BROADCAST_PATCHES];
+    __local Rectangle batch_rectangles[BROADCAST_PATCHES];
 #ifdef ACCUMULATE_XNET
     __local int wire[PE_COUNT];
 #endif
@@ -101,19 +105,19 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
     clear_plane(pe, escaped, tile_roots, depth, owner);
     // No work-item may leave before a barrier, see prefix_sum.cl: a halted shot has empty lists.
     const bool running = is_projecting(shot);
-    const int begin = running && tile != 0 ? list_end[tile * stack_count - 1] : 0;
-    const int end = running ? list_end[(tile + 1) * stack_count - 1] : 0;
+    const int begin = running && tile != 0 ? list_end[tile - 1] : 0;
+    const int end = running ? list_end[tile] : 0;
     for (int first = begin; first < end; first += BROADCAST_PATCHES) {
         const int count = min(BROADCAST_PATCHES, end - first);
         barrier(CLK_LOCAL_MEM_FENCE);
-        broadcast(projections, lists + first, count, pe, batch);
+        broadcast(projections, rectangles, lists + first, count, pe, batch, batch_rectangles);
         barrier(CLK_LOCAL_MEM_FENCE);
         for (int k = 0; k < count; ++k) {
-            count_visit(&activity, batch + k, tile, pe);
+            count_visit(&activity, batch_rectangles + k, tile, pe);
             Coverage coverage = no_coverage();
             for (int area_column = 0; area_column < AREA_COLUMNS; ++area_column)
-                project(batch + k, tile, area_column, pe, tile_roots, depth, owner, &activity,
-                        &coverage);
+                project(batch + k, batch_rectangles + k, tile, area_column, pe, tile_roots, depth,
+                        owner, &activity, &coverage);
             add_coverage(coverage, batch[k].patch, covered_count);
         }
     }

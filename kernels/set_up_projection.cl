@@ -4,6 +4,7 @@
 #include "clip.clh"
 #include "patches.clh"
 #include "progress.clh"
+#include "stacks.clh"
 
 // How far the shooter lies in front of a patch's plane, by the corner that errs least. cull_patches
 // has shown it to be more than kGridMargin.
@@ -61,19 +62,37 @@ static void set_up_outline(const Point* corner, Projections* of) {
     of->rows = proxel_range(bounds.v_least, bounds.v_most, play);
 }
 
-static void store_point(Point point, int lane, __global float* to) {
-    to[0] = lane_of(point.x, lane);
-    to[1] = lane_of(point.y, lane);
-    to[2] = lane_of(point.z, lane);
+// The words of LANES records, one vector a word, in the order of Projection.
+static void words_of(const Projections* from, int patch, real_v* word) {
+    for (int k = 0; k < 4; ++k) {
+        const Point plane = from->planes[k < CORNERS ? k : 0];
+        word[3 * k] = plane.x;
+        word[3 * k + 1] = plane.y;
+        word[3 * k + 2] = plane.z;
+    }
+    word[12] = from->depth.x;
+    word[13] = from->depth.y;
+    word[14] = from->depth.z;
+    word[15] = as_real_v(patch + LANE_INDEX);
 }
 
-static void store_projection(__global Projection* to, int patch, int lane,
-                             const Projections* from) {
-    for (int k = 0; k < CORNERS; ++k) store_point(from->planes[k], lane, to->edge[k]);
-    store_point(from->depth, lane, to->depth);
-    to->patch = patch + lane;
-    to->columns = int_lane_of(from->columns, lane);
-    to->rows = int_lane_of(from->rows, lane);
+// Appends those of LANES projections that are kept; returns how many. What is written of the others
+// is written over: the PE has room for one of each of its patches.
+static int store_projections(const Projections* from, int patch, int kept,
+                             __global Projection* projections, __global Rectangle* rectangles) {
+    real_v word[16];
+    float16 record[LANES];
+    words_of(from, patch, word);
+    turn_words(word, record);
+    int count = 0;
+    UNROLLED for (int lane = 0; lane < LANES; ++lane) {
+        const Rectangle rectangle = {int_lane_of(from->columns, lane),
+                                     int_lane_of(from->rows, lane)};
+        ((__global float16*)projections)[count] = record[lane];
+        rectangles[count] = rectangle;
+        count += kept >> lane & 1;
+    }
+    return count;
 }
 
 // Whether a proxel lies inside all arcs, by the operations of project_patches.
@@ -112,12 +131,12 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
                                 const __global float* normals, int stride, int depth,
                                 const __global Level* stack, const __global int* stack_height,
                                 __global Projection* projections,
-                                __global int* projection_count) {
+                                __global Rectangle* rectangles, __global int* projection_count) {
     if (!is_projecting(shot)) return;
-    const int pe = get_global_id(0);
+    const int pe = own_stack();
     const __global Level* level = stack + pe * (depth / LANES);
     const __global Level* end = level + stack_height[pe];
-    __global Projection* to = projections + pe * depth;
+    int count = 0;
     for (; level < end; ++level) {
         const int patch = level->patch;
         Point corner[CORNERS];
@@ -127,7 +146,7 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
         turn_corners(shot, corner);
         Projections of;
         set_up_outline(corner, &of);
-        int kept = level->visible & bits_of(has_proxels(&of));
+        const int kept = level->visible & bits_of(has_proxels(&of));
         if (kept == 0) continue;
 #ifdef DISTANCE_CONSTANT
         Point centre = corner[0];
@@ -136,7 +155,8 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
 #else
         of.depth = depth_plane(shot, normal, height);
 #endif
-        for (; kept != 0; kept &= kept - 1) store_projection(to++, patch, lowest_bit(kept), &of);
+        const int slot = pe * depth + count;
+        count += store_projections(&of, patch, kept, projections + slot, rectangles + slot);
     }
-    projection_count[pe] = to - (projections + pe * depth);
+    projection_count[pe] = count;
 }

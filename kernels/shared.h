@@ -51,24 +51,26 @@ typedef uint uint32_t;
 #define kExhausted 3  // nothing is left to shoot
 #define kPaused 4     // as many shots as the host asked for
 
-// What the PEs know of the shooting patch, and the host of the progress.
+// What the PEs know of the shooting patch, and the host of the progress. What tells one shooter from
+// the next comes first, kNextShooterWords of it: the host may send it ahead of the kernels.
+#define kNextShooterWords 8
 typedef struct {
-    int32_t origin[3];  // one of the shooter's hemispheres, grid steps
-    float u_axis[3], v_axis[3], normal[3];
     int32_t shooter;
-    int32_t plane;  // the shooter's, as `planes`
     uint32_t part, part_count;  // its hemispheres: aimed so far, and all
     int32_t status;
-    uint32_t shots, shot_limit;
+    // Where its row of form factors lies, or goes to, and whether it is there already.
+    int32_t row, row_known;
+    int32_t plane;         // the shooter's, as `planes`
     uint32_t bin_entries;  // patches in the lists of all tiles
+    int32_t origin[3];     // one of the shooter's hemispheres, grid steps
+    float u_axis[3], v_axis[3], normal[3];
+    uint32_t shots, shot_limit;
     float unshot_fraction;    // largest of the bands
     // Closure, of all shots: proxels owned and escaped, less those of the disks; both 0.
     int32_t least_surplus, most_surplus;
     uint32_t escaped_proxels;  // of the last shot
     // Analytic form factors of the last shot: what closes them, and what escapes.
     float factor_scale, residual_share, escaped_fraction;
-    // Where the shooter's row of form factors lies, or goes to, and whether it is there already.
-    int32_t row, row_known;
     uint32_t rows_kept;
     uint32_t repeated_shots;  // by known rows
 } Shot;
@@ -87,16 +89,22 @@ typedef struct {
     int32_t patch, visible;
 } Level;
 
-// Projection parameters of one patch (sec. 1.5.2): 72 bytes; "about 100" in sec. 1.6.
+// Projection parameters of one patch (sec. 1.5.2), a cache line; with its rectangle 72 bytes, "about
+// 100" in sec. 1.6.
 // An edge is (A, B, C) of eq. 1.2 as a moment: its value is the length by which the edge misses a
 // proxel's ray, over the distance of the edge's nearer end; positive inside.
-// depth is (A", B", C") of app. A. columns and rows are first | last << 16, of proxels.
+// depth is (A", B", C") of app. A.
 typedef struct {
     float edge[4][3];
     float depth[3];
     int32_t patch;
-    uint32_t columns, rows;
 } Projection;
+
+// Bounding rectangle of one patch (app. B), apart from the rest: the sort by tiles reads nothing
+// else. first | last << 16, of proxels.
+typedef struct {
+    uint32_t columns, rows;
+} Rectangle;
 
 // The most energetic of kReduceBlock shooters.
 typedef struct {
@@ -119,7 +127,8 @@ static_assert(sizeof(BlockSummary) == 8);
 static_assert(sizeof(Shot) == 124);
 static_assert(sizeof(Cluster) == 44);
 static_assert(sizeof(Level) == 8);
-static_assert(sizeof(Projection) == 72);
+static_assert(sizeof(Projection) == 64);
+static_assert(sizeof(Rectangle) == 8);
 }  // namespace hemirad::device
 #endif
 

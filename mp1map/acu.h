@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <span>
 #include <string>
@@ -52,6 +54,15 @@ class Acu {
     template <class T>
     void load(Plural<T>& to, std::span<const T> values) {
         write(to.buffer(), values.data(), values.size_bytes());
+    }
+    /// The first words of the first element, a power of two of them and at most 32, without
+    /// waiting: as a pattern they are copied at once, which values in the host's memory are not.
+    template <std::size_t words, class T>
+    void load_words(Plural<T>& to, const T& value) {
+        std::array<cl_uint, words> pattern;
+        std::memcpy(pattern.data(), &value, sizeof(pattern));
+        guarded("load",
+                [&] { queue_.enqueueFillBuffer(to.buffer(), pattern, 0, sizeof(pattern)); });
     }
     template <class T>
     void clear(Plural<T>& to) {

@@ -46,7 +46,8 @@ using Stages = std::map<std::string, Stage>;
 
 // Bytes that a kernel's task cannot do without, each read or written once.
 std::map<std::string, double> bytes_by_kernel(const Work& work) {
-    const double index = 4, count = 4, ranges = 8, projection = sizeof(device::Projection);
+    const double index = 4, count = 4, ranges = sizeof(device::Rectangle);
+    const double projection = sizeof(device::Projection) + ranges;
     const double patch = 12 * work.corners + 12;    // corners and normal
     const double factors = work.analytic ? 12 : 0;  // visible, unblocked, doubtful
     const double covered = work.analytic ? count : 0;
@@ -144,7 +145,7 @@ Work measure_work(const PatchArrays& patches, PipelineSettings settings) {
 }
 
 Stages time_kernels(const PatchArrays& patches, PipelineSettings settings) {
-    settings.timed = true;
+    settings.timed = settings.apart = true;
     ShotPipeline pipeline = pipeline_for(patches, settings);
     const auto shooters = shooters_of(patches);
     Stages stages;

@@ -1,6 +1,6 @@
-// One shot of progressive radiosity against a ray caster that follows the same directions: for each
-// resolution and shooter, the whole shot (as in bench_shot) and Embree's packets take turns. Fails
-// where what they count differs.
+// Shots of progressive radiosity against a ray caster that follows the same directions: for each
+// resolution, the whole shots of a few shooters, sent off one behind another as in a solve, and
+// Embree's packets for the same take turns. Fails where what they count differs.
 // `bench_peer_embree ROOM.obj`; every input polygon is a patch.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -34,10 +34,12 @@ struct Options {
     std::string csv;
 };
 
+constexpr std::size_t kShotsPerTurn = 8;
+
 struct Comparison {
     std::uint32_t resolution = 0;
     std::size_t shooters = 0;
-    double embree_ms = 0, hemirad_ms = 0;                 // medians
+    double embree_ms = 0, hemirad_ms = 0;                 // a shot; medians of turns
     double ratio = 0, processor_ratio = 0;                // medians of Embree's time over ours
     double mean_disagreement = 0, most_disagreement = 0;  // of the disk's proxels
 };
@@ -124,19 +126,30 @@ std::vector<Aimed> aim(const PatchArrays& patches, ShotPipeline& pipeline, Packe
     return aimed;
 }
 
+std::vector<std::span<const Aimed>> turns_of(std::span<const Aimed> aimed) {
+    std::vector<std::span<const Aimed>> turns;
+    for (std::size_t first = 0; first < aimed.size(); first += kShotsPerTurn)
+        turns.push_back(aimed.subspan(first, std::min(kShotsPerTurn, aimed.size() - first)));
+    return turns;
+}
+
 void compare_times(const std::vector<Aimed>& aimed, ShotPipeline& pipeline, PacketCaster& caster,
                    const Options& options, Comparison& result) {
     std::vector<double> embree, ours, ratios, processor_ratios;
     for (std::uint32_t round = 0; round < options.rounds; ++round)
-        for (const Aimed& shooter : aimed) {
+        for (const auto turn : turns_of(aimed)) {
             const Duration our = time_of([&] {
-                pipeline.set_shooter(shooter.patch);
-                shoot(pipeline);
+                for (const Aimed& shooter : turn) {
+                    pipeline.set_shooter(shooter.patch);
+                    shoot(pipeline);
+                }
                 pipeline.shot();
             });
-            const Duration their = time_of([&] { caster.count(shooter.shot, result.resolution); });
-            ours.push_back(our.wall_ms);
-            embree.push_back(their.wall_ms);
+            const Duration their = time_of([&] {
+                for (const Aimed& shooter : turn) caster.count(shooter.shot, result.resolution);
+            });
+            ours.push_back(our.wall_ms / static_cast<double>(turn.size()));
+            embree.push_back(their.wall_ms / static_cast<double>(turn.size()));
             ratios.push_back(their.wall_ms / our.wall_ms);
             processor_ratios.push_back(their.processor_ms / our.processor_ms);
         }

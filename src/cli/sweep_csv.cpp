@@ -40,13 +40,6 @@ const std::vector<std::string>& mp1_columns() {
     return names;
 }
 
-/// Kernels of a shot; the plane is set up once.
-std::vector<std::string> timed_kernels() {
-    std::vector<std::string> names = kernel_names(FormFactorMode::count);
-    std::erase(names, "init_plane");
-    return names;
-}
-
 std::string joined(const std::vector<std::string>& fields) {
     std::string text;
     for (const auto& field : fields) text += (text.empty() ? "" : ",") + field;
@@ -56,7 +49,8 @@ std::string joined(const std::vector<std::string>& fields) {
 std::string header() {
     std::vector<std::string> names = settings_columns();
     names.insert(names.end(), measured_columns().begin(), measured_columns().end());
-    for (const auto& kernel : timed_kernels()) names.push_back("seconds_" + kernel);
+    for (const auto& kernel : launched_kernels(FormFactorMode::count))
+        names.push_back("seconds_" + kernel);
     names.insert(names.end(), mp1_columns().begin(), mp1_columns().end());
     return joined(names);
 }
@@ -122,7 +116,8 @@ std::string levels_text(const std::vector<double>& fill) {
 std::vector<std::string> measured_fields(const SweepMeasurement& measured,
                                          const std::string& wrong_per_million) {
     const auto ratio = [](double a, double b) { return number_text(b > 0 ? a / b : 0); };
-    const double bytes = measured.tile_patches * sizeof(device::Projection);
+    const double bytes =
+        measured.tile_patches * (sizeof(device::Projection) + sizeof(device::Rectangle));
     std::vector<std::string> fields{number_text(measured.visible),
                                     number_text(measured.projected),
                                     number_text(measured.stack_levels),
@@ -135,7 +130,7 @@ std::vector<std::string> measured_fields(const SweepMeasurement& measured,
                                     wrong_per_million,
                                     number_text(measured.seconds_min),
                                     number_text(measured.seconds_median)};
-    for (const auto& kernel : timed_kernels())
+    for (const auto& kernel : launched_kernels(FormFactorMode::count))
         fields.push_back(seconds_text(measured.kernel_seconds, kernel));
     const auto& mp1 = measured.mp1;
     for (const double seconds : {mp1.total(), mp1.cull, mp1.set_up, mp1.diffusion, mp1.inside_tests,

@@ -35,8 +35,8 @@ std::uint64_t list_capacity(std::uint64_t stride) {
     return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
 }
 
-// Rows of form factors that so many bytes hold, 4 bytes a patch, beside the one of the shot; at most
-// one for each patch.
+// Rows of form factors that so many bytes hold, 4 bytes a patch, beside the one of the shot; at
+// most one for each patch.
 std::uint32_t row_capacity(std::uint32_t patches, std::uint64_t stride, std::uint64_t row_bytes) {
     const std::uint64_t rows = std::max<std::uint64_t>(row_bytes / (4 * stride), 1);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, rows - 1));
@@ -114,13 +114,23 @@ void require_addressable(const PatchArrays& patches) {
 
 std::vector<std::string> kernel_names(FormFactorMode mode) {
     std::vector<std::string> names = {"init_plane",        "aim_hemisphere", "cull_patches",
-                                      "set_up_projection", "count_areas",    "prefix_sum",
-                                      "bin_areas",         "project_patches"};
+                                      "set_up_projection", "count_areas",    "prepare_patches",
+                                      "prefix_sum",        "bin_areas",      "project_patches"};
     if (mode == FormFactorMode::analytic)
         for (const char* name :
              {"estimate_form_factors", "correct_near_pairs", "add_up_factors", "spread_residual"})
             names.emplace_back(name);
-    names.insert(names.end(), {"update_radiosity", "update_unshot", "choose_shooter"});
+    names.insert(names.end(),
+                 {"update_radiosity", "update_unshot", "receive_flux", "choose_shooter"});
+    return names;
+}
+
+std::vector<std::string> launched_kernels(FormFactorMode mode) {
+    std::vector<std::string> names = kernel_names(mode);
+    std::erase_if(names, [](const std::string& name) {
+        return name == "init_plane" || name == "cull_patches" || name == "set_up_projection" ||
+               name == "count_areas" || name == "update_radiosity" || name == "update_unshot";
+    });
     return names;
 }
 
@@ -166,9 +176,10 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride) + 4 * stride;
     const std::uint64_t groups =
         shooters < patches ? shooter_stride * 4 * (3 * corner_count + 6) : 0;
-    const std::uint64_t projection = slots * sizeof(device::Projection) +
-                                     slots / array.lanes * sizeof(device::Level) + stacks * 8;
-    const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * stacks);
+    const std::uint64_t projection =
+        slots * (sizeof(device::Projection) + sizeof(device::Rectangle)) +
+        slots / array.lanes * sizeof(device::Level) + stacks * 8;
+    const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * (stacks + 1));
     const std::uint64_t plane = 4 * tiles * array.tile_width * array.tile_height;
     const std::uint64_t reduction =
         shooter_stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
@@ -196,11 +207,13 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
           stride_, settings.row_bytes)),
       disk_proxels_(disk_proxel_count(resolution_)),
       mode_(settings.form_factor),
+      two_levels_(!shooters.first_patch.empty()),
+      apart_(settings.apart),
       tolerance_(static_cast<float>(settings.tolerance)),
       samples_(samples_of(settings, shooter_stride_)) {
     require_addressable(patches);
     require_countable(disk_proxels_, resolution_, samples_);
-    build_kernels(device, settings, patches.corner_count, !shooters.first_patch.empty());
+    build_kernels(device, settings, patches.corner_count);
     shot_ = acu_.plural(std::vector{first_shot()});
     clusters_ = acu_.plural(clusters_of(patches));
     corners_ = acu_.plural(patches.corners);
@@ -212,7 +225,9 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     stack_height_ = acu_.plural<std::int32_t>(stack_count_);
     projection_count_ = acu_.plural<std::int32_t>(stack_count_);
     projections_ = acu_.plural<device::Projection>(std::size_t{stack_count_} * depth_);
-    list_end_ = acu_.plural<std::int32_t>(std::size_t{tile_count_} * stack_count_);
+    rectangles_ = acu_.plural<device::Rectangle>(projections_.size());
+    places_ = acu_.plural<std::int32_t>(std::size_t{tile_count_} * stack_count_);
+    list_end_ = acu_.plural<std::int32_t>(tile_count_);
     lists_ = acu_.plural<std::int32_t>(list_capacity(stride_));
     proxel_count_ = acu_.plural<std::int32_t>(stride_ + kSpareCounts);
     owners_ = acu_.plural<std::int32_t>(needs_owners(settings) ? roots_.size() : 0);
@@ -237,10 +252,10 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
 }
 
 void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
-                                 std::uint32_t corner_count, bool two_levels) {
+                                 std::uint32_t corner_count) {
     const auto start = std::chrono::steady_clock::now();
     const std::string options =
-        build_options(array_, resolution_, corner_count, band_count_, two_levels, settings);
+        build_options(array_, resolution_, corner_count, band_count_, two_levels_, settings);
     std::string source;
     const auto names = kernel_names(mode_);
     for (const auto& name : names) source += kernel_source(name, settings.kernels_dir);
@@ -299,28 +314,41 @@ void ShotPipeline::cull_patches() {
 void ShotPipeline::set_up_projection() {
     acu_.issue(kernel("set_up_projection"), stack_grid(), shot_, corners_, normals_,
                std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, projections_,
-               projection_count_);
+               rectangles_, projection_count_);
 }
 
 void ShotPipeline::count_areas() {
-    acu_.issue(kernel("count_areas"), stack_grid(), shot_, projections_, projection_count_,
-               std::int32_t(depth_), list_end_);
+    acu_.issue(kernel("count_areas"), stack_grid(), shot_, rectangles_, projection_count_,
+               std::int32_t(depth_), places_);
+}
+
+// A launch's threads have to be woken, and wait for the slowest of them.
+void ShotPipeline::prepare_patches() {
+    if (apart_) {
+        cull_patches();
+        set_up_projection();
+        count_areas();
+        return;
+    }
+    acu_.issue(kernel("prepare_patches"), stack_grid(), shot_, clusters_, corners_, normals_,
+               planes_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_,
+               projections_, rectangles_, projection_count_, places_);
 }
 
 void ShotPipeline::prefix_sum() {
-    acu_.issue(kernel("prefix_sum"), {1, kPrefixPes}, shot_, list_end_,
-               std::int32_t(list_end_.size()), std::uint32_t(lists_.size()));
+    acu_.issue(kernel("prefix_sum"), {1, kPrefixPes}, shot_, places_, std::int32_t(stack_count_),
+               list_end_, std::uint32_t(lists_.size()));
 }
 
 void ShotPipeline::bin_areas() {
-    acu_.issue(kernel("bin_areas"), stack_grid(), shot_, projections_, projection_count_,
-               std::int32_t(depth_), list_end_, lists_);
+    acu_.issue(kernel("bin_areas"), stack_grid(), shot_, rectangles_, projection_count_,
+               std::int32_t(depth_), places_, lists_);
 }
 
 void ShotPipeline::project_patches() {
-    acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, list_end_,
-               lists_, std::int32_t(stack_count_), std::int32_t(escaped_owner()), proxel_count_,
-               covered_count_, owners_, activity_);
+    acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, rectangles_,
+               list_end_, lists_, std::int32_t(escaped_owner()), proxel_count_, covered_count_,
+               owners_, activity_);
 }
 
 void ShotPipeline::estimate_form_factors() {
@@ -357,6 +385,19 @@ void ShotPipeline::update_unshot() {
                reflectance_, band_weight_, summaries_, block_unshot_);
 }
 
+// Of two levels, a shooter's patches are not always those of the PE that adds it up.
+void ShotPipeline::receive_flux() {
+    if (apart_ || two_levels_) {
+        update_radiosity();
+        update_unshot();
+        return;
+    }
+    acu_.issue(kernel("receive_flux"), stack_grid(), shot_, shot_flux_, proxel_count_,
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, received_,
+               received_rest_, first_patch_, std::int32_t(shooter_stride_), unshot_, reflectance_,
+               band_weight_, summaries_, block_unshot_);
+}
+
 void ShotPipeline::choose_shooter() {
     acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
                std::int32_t(summaries_.size()), unshot_, std::int32_t(shooter_stride_),
@@ -372,13 +413,13 @@ void ShotPipeline::set_shot(const device::Shot& shot) {
 }
 
 void ShotPipeline::set_shooter(std::uint32_t shooter, std::uint32_t part) {
-    device::Shot next = shot();
+    device::Shot next{};
     next.shooter = static_cast<std::int32_t>(shooter);
     next.part = part;
+    next.part_count = part_count(shooter);
     next.status = kRunning;
     next.row = static_cast<std::int32_t>(row_capacity_);
-    next.row_known = 0;
-    set_shot(next);
+    acu_.load_words<kNextShooterWords>(shot_, next);
 }
 
 void ShotPipeline::set_shot_limit(std::uint64_t shots) {
@@ -471,14 +512,19 @@ std::vector<std::int32_t> ShotPipeline::visible_patches() {
     return result;
 }
 
-std::vector<device::Projection> ShotPipeline::projections() {
-    const auto slots = acu_.unload(projections_);
+template <class T>
+std::vector<T> ShotPipeline::projected(const mp1map::Plural<T>& plural) {
+    const auto slots = acu_.unload(plural);
     const auto counts = acu_.unload(projection_count_);
-    std::vector<device::Projection> result;
+    std::vector<T> result;
     for (std::size_t pe = 0; pe < counts.size(); ++pe)
         result.insert(result.end(), slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_),
                       slots.begin() + static_cast<std::ptrdiff_t>(pe * depth_ + counts[pe]));
     return result;
 }
+
+std::vector<device::Projection> ShotPipeline::projections() { return projected(projections_); }
+
+std::vector<device::Rectangle> ShotPipeline::rectangles() { return projected(rectangles_); }
 
 }  // namespace hemirad

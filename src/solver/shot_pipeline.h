@@ -48,6 +48,7 @@ struct PipelineSettings {
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;
     bool timed = false;
+    bool apart = false;  ///< every kernel launched by itself, to be timed
     Variants variants;
     bool count_activity = false;  ///< activity() after each projection
     bool keep_owners = false;     ///< for tests: owners() after each projection
@@ -79,9 +80,7 @@ class ShotPipeline {
 
     void init_plane();
     void aim_hemisphere();
-    void cull_patches();
-    void set_up_projection();
-    void count_areas();
+    void prepare_patches();
     void prefix_sum();
     void bin_areas();
     void project_patches();
@@ -89,9 +88,15 @@ class ShotPipeline {
     void correct_near_pairs();
     void add_up_factors();
     void spread_residual();
+    void receive_flux();
+    void choose_shooter();
+
+    /// What prepare_patches() and receive_flux() consist of.
+    void cull_patches();
+    void set_up_projection();
+    void count_areas();
     void update_radiosity();
     void update_unshot();
-    void choose_shooter();
 
     /// Waits; how far the device has come.
     device::Shot shot();
@@ -117,6 +122,7 @@ class ShotPipeline {
     Activity activity();                            ///< since the last call; count_activity
     std::vector<std::int32_t> visible_patches();    ///< of the last hemisphere, ascending
     std::vector<device::Projection> projections();  ///< of those with a proxel, ascending
+    std::vector<device::Rectangle> rectangles();    ///< of projections()
 
     FormFactorMode mode() const { return mode_; }
     std::uint64_t disk_proxels() const { return disk_proxels_; }  ///< of one hemisphere
@@ -132,9 +138,11 @@ class ShotPipeline {
   private:
     mp1map::Kernel& kernel(const std::string& name);
     void build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
-                       std::uint32_t corner_count, bool two_levels);
+                       std::uint32_t corner_count);
     void load_shooters(const ShooterArrays& shooters);
     void load_near_pairs(const NearPairs& pairs);
+    template <class T>
+    std::vector<T> projected(const mp1map::Plural<T>& plural);  // what is set up of [pe][slot]
     mp1map::Grid stack_grid() const;
     mp1map::Grid tile_grid() const;
 
@@ -148,6 +156,7 @@ class ShotPipeline {
     std::uint32_t tile_count_, stack_count_, depth_, row_capacity_;
     std::uint64_t disk_proxels_;
     FormFactorMode mode_;
+    bool two_levels_, apart_;
     float tolerance_;
     std::vector<std::int32_t> samples_;  // [shooter]
 
@@ -162,7 +171,8 @@ class ShotPipeline {
     mp1map::Plural<device::Level> stack_;
     mp1map::Plural<std::int32_t> stack_height_, projection_count_;
     mp1map::Plural<device::Projection> projections_;
-    mp1map::Plural<std::int32_t> list_end_, lists_, proxel_count_, owners_;
+    mp1map::Plural<device::Rectangle> rectangles_;
+    mp1map::Plural<std::int32_t> places_, list_end_, lists_, proxel_count_, owners_;
     mp1map::Plural<std::int32_t> covered_count_, near_begin_, near_patch_;
     mp1map::Plural<float> near_factor_, factors_, factor_block_sums_;
     mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
@@ -175,6 +185,9 @@ class ShotPipeline {
 
 /// The files of kernels/ that a pipeline is made of, in the order of a shot.
 std::vector<std::string> kernel_names(FormFactorMode mode);
+
+/// Those of them that a shot of one level launches, unless they are to run apart.
+std::vector<std::string> launched_kernels(FormFactorMode mode);
 
 /// Proxels whose centre lies in the disk (sec. 1.3.2), of resolution^2.
 std::uint64_t disk_proxel_count(std::uint32_t resolution);

@@ -120,9 +120,7 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
 // kernels.
 void project_hemisphere(ShotPipeline& pipeline) {
     pipeline.aim_hemisphere();
-    pipeline.cull_patches();
-    pipeline.set_up_projection();
-    pipeline.count_areas();
+    pipeline.prepare_patches();
     pipeline.prefix_sum();
     pipeline.bin_areas();
     pipeline.project_patches();
@@ -147,8 +145,7 @@ void close_form_factors(ShotPipeline& pipeline) {
 }
 
 void distribute_flux(ShotPipeline& pipeline) {
-    pipeline.update_radiosity();
-    pipeline.update_unshot();
+    pipeline.receive_flux();
     pipeline.choose_shooter();
 }
 

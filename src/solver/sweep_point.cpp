@@ -47,12 +47,13 @@ PlaneView view_of(ShotPipeline& pipeline) {
     constexpr mp1map::ProxelRange kEmpty{1, 0};
     PlaneView view;
     const auto projections = pipeline.projections();
-    auto next = projections.begin();
+    const auto rectangles = pipeline.rectangles();
+    std::size_t next = 0;
     for (const std::int32_t patch : pipeline.visible_patches()) {
         view.visible.push_back({kEmpty, kEmpty, static_cast<std::uint32_t>(patch)});
-        if (next == projections.end() || next->patch != patch) continue;
-        view.visible.back().columns = range_of(next->columns);
-        view.visible.back().rows = range_of(next->rows);
+        if (next == projections.size() || projections[next].patch != patch) continue;
+        view.visible.back().columns = range_of(rectangles[next].columns);
+        view.visible.back().rows = range_of(rectangles[next].rows);
         ++next;
     }
     view.useful_proxels = pipeline.activity().useful_proxels;

@@ -9,17 +9,22 @@ namespace {
 constexpr std::uint32_t kResolution = 200;
 
 struct Lists {
-    std::vector<std::int32_t> begin, end;  // [tile][pe]
-    std::vector<std::int32_t> slots;
+    std::vector<std::int32_t> begin, end;  // [pe][tile]
+    std::vector<std::int32_t> slots;       // by tile, and in it by PE
 };
 
 Lists expected_lists(const RectangleStacks& rectangles, const Stacks& stacks, const Shape& shape) {
+    const auto by_tile = slots_by_tile(rectangles, stacks, shape, kResolution);
     Lists lists;
-    for (const auto& of_tile : slots_by_tile(rectangles, stacks, shape, kResolution))
-        for (const auto& of_pe : of_tile) {
-            lists.begin.push_back(static_cast<std::int32_t>(lists.slots.size()));
-            lists.slots.insert(lists.slots.end(), of_pe.begin(), of_pe.end());
-            lists.end.push_back(static_cast<std::int32_t>(lists.slots.size()));
+    lists.begin.resize(by_tile.size() * stacks.count());
+    lists.end = lists.begin;
+    for (std::size_t tile = 0; tile < by_tile.size(); ++tile)
+        for (std::size_t pe = 0; pe < stacks.count(); ++pe) {
+            const auto& slots = by_tile[tile][pe];
+            const std::size_t at = pe * by_tile.size() + tile;
+            lists.begin[at] = static_cast<std::int32_t>(lists.slots.size());
+            lists.slots.insert(lists.slots.end(), slots.begin(), slots.end());
+            lists.end[at] = static_cast<std::int32_t>(lists.slots.size());
         }
     return lists;
 }
@@ -36,7 +41,7 @@ Lists binned(const RectangleStacks& rectangles, const Stacks& stacks, const Shap
     shot.status = status;
     auto ends = run.plural(expected.begin);
     auto slots = run.plural(std::vector<std::int32_t>(expected.slots.size(), -7));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(rectangles.projections),
+    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(rectangles.rectangles),
               run.plural(rectangles.heights), std::int32_t(stacks.depth), ends, slots);
     return {expected.begin, run.acu().unload(ends), run.acu().unload(slots)};
 }

@@ -19,7 +19,7 @@ std::vector<std::int32_t> counts_of(const RectangleStacks& rectangles, const Sta
     device::Shot shot{};
     shot.status = status;
     auto entries = run.plural(std::vector<std::int32_t>(tiles * stacks.count(), -7));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(rectangles.projections),
+    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(rectangles.rectangles),
               run.plural(rectangles.heights), std::int32_t(stacks.depth), entries);
     return run.acu().unload(entries);
 }
@@ -37,19 +37,18 @@ TEST_P(CountAreas, EveryPeCountsItsPatchesThatTouchEachTile) {
     const auto counts = counts_of(rectangles, stacks, GetParam(), slots.size());
 
     std::vector<std::int32_t> expected;
-    for (const auto& of_tile : slots)
-        for (const auto& of_pe : of_tile)
-            expected.push_back(static_cast<std::int32_t>(of_pe.size()));
+    for (std::size_t pe = 0; pe < stacks.count(); ++pe)
+        for (const auto& of_tile : slots)
+            expected.push_back(static_cast<std::int32_t>(of_tile[pe].size()));
     EXPECT_EQ(counts, expected);
 }
 
 TEST(CountAreasOfOneTile, EdgesOfRectanglesCountAndEmptyOnesDoNot) {
     const Shape shape{1, 1, 1, 10, 10};
     const Stacks stacks(shape, 16);
-    RectangleStacks rectangles{std::vector<device::Projection>(stacks.slots()), {4, 0}};
+    RectangleStacks rectangles{std::vector<device::Rectangle>(stacks.slots()), {4, 0}};
     const auto set = [&](int level, std::uint32_t columns, std::uint32_t rows) {
-        rectangles.projections[level].columns = columns;
-        rectangles.projections[level].rows = rows;
+        rectangles.rectangles[level] = {columns, rows};
     };
     set(0, packed(9, 10), packed(0, 0));         // two tiles, by a proxel each
     set(1, packed(10, 19), packed(0, 9));        // exactly the second
@@ -61,8 +60,8 @@ TEST(CountAreasOfOneTile, EdgesOfRectanglesCountAndEmptyOnesDoNot) {
 
     std::vector<std::int32_t> expected(800, 0);
     expected[0] = 1;
-    expected[2] = 2;
-    expected[798] = 1;
+    expected[1] = 2;
+    expected[399] = 1;
     EXPECT_EQ(counts, expected);
 }
 

@@ -80,8 +80,10 @@ LoadedStacks visible_stacks(const device::Shot& shot, const PatchArrays& arrays,
     return loaded;
 }
 
-std::vector<device::Projection> projections_of(const device::Shot& shot, const PatchArrays& arrays,
-                                               const Shape& shape) {
+struct Projected : device::Projection, device::Rectangle {};
+
+std::vector<Projected> projections_of(const device::Shot& shot, const PatchArrays& arrays,
+                                      const Shape& shape) {
     const Stacks stacks(shape, arrays.stride);
     const auto loaded = visible_stacks(shot, arrays, stacks, shape.lanes);
     KernelOptions options;
@@ -90,17 +92,20 @@ std::vector<device::Projection> projections_of(const device::Shot& shot, const P
     options.resolution = kResolution;
     KernelRun run("set_up_projection", options);
     auto projections = run.plural(std::vector<device::Projection>(stacks.slots()));
+    auto rectangles = run.plural(std::vector<device::Rectangle>(stacks.slots()));
     auto counts = run.plural(std::vector<std::int32_t>(stacks.count()));
     run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(arrays.corners),
               run.plural(arrays.normals), std::int32_t(arrays.stride), std::int32_t(stacks.depth),
-              run.plural(loaded.levels), run.plural(loaded.heights), projections, counts);
+              run.plural(loaded.levels), run.plural(loaded.heights), projections, rectangles,
+              counts);
 
     const auto slots = run.acu().unload(projections);
+    const auto bounds = run.acu().unload(rectangles);
     const auto count = run.acu().unload(counts);
-    std::vector<device::Projection> result;
+    std::vector<Projected> result;
     for (std::size_t pe = 0; pe < stacks.count(); ++pe)
         for (int slot = 0; slot < count[pe]; ++slot)
-            result.push_back(slots[pe * stacks.depth + slot]);
+            result.push_back({slots[pe * stacks.depth + slot], bounds[pe * stacks.depth + slot]});
     return result;
 }
 
@@ -134,9 +139,9 @@ bool claims_a_proxel(const std::vector<Plane>& edges) {
     return false;
 }
 
-bool holds_a_proxel(const device::Projection& projection) {
-    return (projection.columns & 0xffff) <= projection.columns >> 16 &&
-           (projection.rows & 0xffff) <= projection.rows >> 16;
+bool holds_a_proxel(const device::Rectangle& rectangle) {
+    return (rectangle.columns & 0xffff) <= rectangle.columns >> 16 &&
+           (rectangle.rows & 0xffff) <= rectangle.rows >> 16;
 }
 
 class SetUpProjection : public testing::TestWithParam<Shape> {

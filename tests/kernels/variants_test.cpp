@@ -91,6 +91,24 @@ TEST_P(Variants, CountingChangesNothing) {
     EXPECT_EQ(seen(counted, GetParam()).owners, seen({}, GetParam()).owners);
 }
 
+TEST_P(Variants, KernelsOfOneLaunchCountWhatTheyDoApart) {
+    const auto state_after = [](bool apart) {
+        PipelineSettings settings;
+        settings.apart = apart;
+        Aimed aimed(soup(300, 0.4, 7), GetParam(), 128, settings);
+        for (const std::uint32_t shooter : {0u, 150u, 0u}) {
+            aimed.pipeline().set_shooter(shooter);
+            shoot(aimed.pipeline());
+        }
+        return std::pair(aimed.pipeline().received(), aimed.pipeline().unshot());
+    };
+
+    const auto together = state_after(false);
+
+    EXPECT_TRUE(together == state_after(true));
+    EXPECT_GT(std::ranges::max(together.first), 0.0);
+}
+
 TEST(Activity, OneSquareIsCountedInTheAreasThatItsRectangleTouches) {
     PipelineSettings counted;
     counted.count_activity = true;
@@ -102,12 +120,12 @@ TEST(Activity, OneSquareIsCountedInTheAreasThatItsRectangleTouches) {
 
     const auto activity = aimed.pipeline().activity();
 
-    const auto projection = aimed.pipeline().projections().at(0);
+    const auto rectangle = aimed.pipeline().rectangles().at(0);
     const auto areas = [](std::uint32_t range) {
         return (range >> 16) / 8 - (range & 0xffff) / 8 + 1;
     };
     const auto owners = aimed.owners();
-    EXPECT_EQ(activity.visited_areas, areas(projection.columns) * areas(projection.rows));
+    EXPECT_EQ(activity.visited_areas, areas(rectangle.columns) * areas(rectangle.rows));
     EXPECT_EQ(activity.tile_patches, activity.visited_areas);
     EXPECT_EQ(activity.useful_proxels,
               static_cast<std::uint32_t>(std::count(owners.begin(), owners.end(), 1)));

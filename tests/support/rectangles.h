@@ -5,7 +5,7 @@
 
 #include "support/patch_database.h"
 
-/// Stacks of projections of which only the bounding rectangles matter, and the tiles they touch.
+/// Stacks of bounding rectangles, and the tiles they touch.
 namespace hemirad::test {
 
 inline std::uint32_t packed(std::uint32_t first, std::uint32_t last) { return first | last << 16; }
@@ -13,8 +13,8 @@ inline std::uint32_t packed(std::uint32_t first, std::uint32_t last) { return fi
 inline constexpr std::uint32_t kEmptyRange = 1;  // from 1 to 0
 
 struct RectangleStacks {
-    std::vector<device::Projection> projections;  // [pe][level]
-    std::vector<std::int32_t> heights;            // [pe]
+    std::vector<device::Rectangle> rectangles;  // [pe][level]
+    std::vector<std::int32_t> heights;          // [pe]
 };
 
 /// Rectangles of all sizes from one proxel to the whole plane, every tenth of them empty.
@@ -30,10 +30,10 @@ inline RectangleStacks random_rectangles(const Stacks& stacks, std::uint32_t res
             below(3) == 0 ? resolution : std::min<std::uint32_t>(resolution, first + 9);
         return below(20) == 0 ? kEmptyRange : packed(first, first + below(most - first));
     };
-    RectangleStacks result{std::vector<device::Projection>(stacks.slots()), {}};
-    for (auto& projection : result.projections) {
-        projection.columns = range();
-        projection.rows = range();
+    RectangleStacks result{std::vector<device::Rectangle>(stacks.slots()), {}};
+    for (auto& rectangle : result.rectangles) {
+        rectangle.columns = range();
+        rectangle.rows = range();
     }
     for (std::size_t pe = 0; pe < stacks.count(); ++pe)
         result.heights.push_back(static_cast<std::int32_t>(below(stacks.depth + 1)));
@@ -57,9 +57,9 @@ inline std::vector<std::vector<std::vector<std::int32_t>>> slots_by_tile(
             for (std::size_t pe = 0; pe < stacks.count(); ++pe)
                 for (int level = 0; level < rectangles.heights[pe]; ++level) {
                     const auto slot = pe * stacks.depth + level;
-                    const auto& projection = rectangles.projections[slot];
-                    if (overlaps(projection.columns, column, shape.tile_width) &&
-                        overlaps(projection.rows, row, shape.tile_height))
+                    const auto& rectangle = rectangles.rectangles[slot];
+                    if (overlaps(rectangle.columns, column, shape.tile_width) &&
+                        overlaps(rectangle.rows, row, shape.tile_height))
                         of_tile[pe].push_back(static_cast<std::int32_t>(slot));
                 }
         }
