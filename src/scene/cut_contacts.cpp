@@ -135,45 +135,6 @@ class Partition {
     std::vector<Polygon> pieces_;
 };
 
-// The corners of others that lie within its edges make straight ones, so that neighbours share
-// whole edges.
-Polygon with_corners_on_edges(const Polygon& polygon, const std::vector<Corner>& corners,
-                              double precision) {
-    struct OnEdge {
-        double t;
-        Corner corner;
-    };
-    Polygon result;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const glm::dvec2& a = polygon[i].at;
-        const glm::dvec2 edge = polygon[(i + 1) % polygon.size()].at - a;
-        std::vector<OnEdge> on_edge;
-        for (const Corner& corner : corners) {
-            const double t = glm::dot(corner.at - a, edge) / glm::dot(edge, edge);
-            if (!(t > 0 && t < 1) || glm::distance(corner.at, a + t * edge) > precision) continue;
-            if (std::ranges::find(polygon, corner.vertex, &Corner::vertex) == polygon.end())
-                on_edge.push_back({t, corner});
-        }
-        std::ranges::sort(on_edge, {}, &OnEdge::t);
-        result.push_back(polygon[i]);
-        for (const OnEdge& on : on_edge) result.push_back(on.corner);
-    }
-    return result;
-}
-
-std::vector<CellPiece> with_common_edges(const std::vector<Polygon>& polygons, double precision) {
-    std::vector<Corner> corners;
-    for (const Polygon& polygon : polygons)
-        corners.insert(corners.end(), polygon.begin(), polygon.end());
-    std::ranges::sort(corners, {}, &Corner::vertex);
-    const auto repeated = std::ranges::unique(corners, {}, &Corner::vertex);
-    corners.erase(repeated.begin(), repeated.end());
-    std::vector<CellPiece> pieces;
-    for (const Polygon& polygon : polygons)
-        pieces.push_back({0, 0, with_corners_on_edges(polygon, corners, precision)});
-    return pieces;
-}
-
 }  // namespace
 
 ContactGrid::ContactGrid(std::vector<Contact> contacts, const Surface& surface, double slack)
@@ -215,12 +176,12 @@ std::vector<Polygon> cut_along_contacts(const Polygon& polygon,
     if (contacts.empty() || contacts.size() > kMostContacts) return {polygon};
     Partition partition(slack, splitter);
     if (!partition.cut(polygon, contacts)) return {polygon};
-    const auto pieces = partition.take();
+    std::vector<CellPiece> pieces;
+    for (Polygon& piece : partition.take()) pieces.push_back({0, 0, std::move(piece)});
     if (pieces.size() == 1) return {polygon};
     std::vector<Polygon> parts;
-    const Barriers barriers{contacts, slack};
     for (MergedPiece& merged :
-         merge_pieces(with_common_edges(pieces, precision.plane), precision.plane, barriers))
+         merge_pieces(pieces, precision.plane, {.contacts = contacts, .slack = slack}))
         if (merged.polygon.size() > 2) parts.push_back(std::move(merged.polygon));
     return parts;
 }

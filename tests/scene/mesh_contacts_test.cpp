@@ -162,6 +162,15 @@ TEST(Contacts, OfABlockWithoutABottomCutTheFloorAlongItsSides) {
     expect_sound(mesh);
 }
 
+TEST(Contacts, OfASheetWithItsFrontOnTheFloorCutItAlongItsOutline) {
+    const auto sheet = reversed(rectangle(1.3, 1.4, 2.6, 2.7));
+    const Mesh mesh = mesh_of(joined(hall(), Faces{sheet}), 1);
+
+    EXPECT_EQ(floor_of(mesh).size(), 12u + 4 * 3);
+    EXPECT_LT(largest_straddling(mesh, rectangle(1.3, 1.4, 2.6, 2.7)), 1e-12);
+    expect_sound(mesh);
+}
+
 TEST(Contacts, OfTurnedBlocksCutTheFloorAtAnyAngle) {
     for (const double degrees : {1.0, 17.0, 45.0, 60.0, 89.999}) {
         const auto block = turned(solid_box({1.3, 1.4, 0}, {2.6, 2.7, 1}), degrees);
@@ -247,6 +256,34 @@ TEST(Contacts, OfAPartitionThatEndsWithinTheFloorCutItAlongTheWall) {
 /// Of a box, the four upright ones.
 Faces sides_of(const Faces& box) { return {box.begin() + 2, box.end()}; }
 
+Outline wall(double x0, double y0, double x1, double y1) {
+    return {{x0, y0, 0}, {x1, y1, 0}, {x1, y1, 1}, {x0, y0, 1}};
+}
+
+/// Whether a patch of the floor reaches to both sides of the plane x = 2, close to which y is.
+bool is_crossed(const Mesh& mesh, double y) {
+    return std::ranges::any_of(floor_of(mesh), [&](const Patch& patch) {
+        const auto corners = corners_of(mesh, patch);
+        return area_over(corners, rectangle(1.9, y, 2, y + 0.1)) > 1e-9 &&
+               area_over(corners, rectangle(2, y, 2.1, y + 0.1)) > 1e-9;
+    });
+}
+
+// The floor falls into pieces along the first wall's line, then, left and right of it, along those
+// of others. Two of these on either side are joined again; the two that come out share an edge that
+// runs along the first wall, and one beyond its end that runs along none.
+TEST(Contacts, OfWallsInOneCellJoinNothingAcrossAnyOfThem) {
+    const Mesh mesh = mesh_of(
+        joined(hall(), Faces{wall(2, 0, 2, 1.9), wall(0.2, 2, 1.1, 2), wall(1.2, 1.6, 1.2, 2.4),
+                             wall(1.5, 3, 1.9, 3), wall(3.8, 2, 2.9, 2), wall(2.8, 1.6, 2.8, 2.4),
+                             wall(2.1, 3, 2.5, 3)}),
+        4);
+
+    EXPECT_FALSE(is_crossed(mesh, 1));
+    EXPECT_EQ(floor_of(mesh).size(), 7u);
+    expect_sound(mesh);
+}
+
 TEST(Contacts, BehindAFloorDoNotCutItsFront) {
     const auto below = sides_of(solid_box({1.3, 1.4, -1}, {2.6, 2.7, 0}));
     const Mesh mesh = mesh_of(joined(hall(), below), 1);
@@ -295,6 +332,17 @@ TEST(Contacts, BesideAGridLineLeaveNoSlivers) {
     }
 }
 
+// The corner is drawn to no grid line, nor the floor's vertex on the line to the corner.
+TEST(Contacts, OfACornerWithinTheWeldOfAGridLineLeaveVerticesOnIt) {
+    const double x = 1 - 3e-7;
+    const Outline diamond{{x, 1.5, 0}, {x + 0.4, 1.1, 0}, {x + 0.8, 1.5, 0}, {x + 0.4, 1.9, 0}};
+    const Mesh mesh = mesh_of(joined(hall(), prism(diamond, 1)), 1);
+
+    EXPECT_LT(3e-7, mesh.weld);
+    EXPECT_LT(largest_straddling(mesh, diamond), 1e-6);
+    expect_sound(mesh);
+}
+
 TEST(Contacts, OfSlightlyTurnedBlocksLeaveNoSlivers) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> any(0, 1);
@@ -334,7 +382,12 @@ TEST(Contacts, DoNotCutPolygonsThatAreNotCut) {
     EXPECT_EQ(mesh.patches.size(), 12u);
 }
 
-TEST(Contacts, OfRandomBlocksLeaveNoPatchHalfCovered) {
+glm::dvec3 tilted(const glm::dvec3& p, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+}
+
+TEST(Contacts, OfRandomBlocksOfFloatsLeaveNoPatchHalfCovered) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> any(0, 1);
     for (int run = 0; run < 100; ++run) {
@@ -348,9 +401,11 @@ TEST(Contacts, OfRandomBlocksLeaveNoPatchHalfCovered) {
             faces = joined(faces, any(random) < 0.5 ? block : without_bottom(block));
         }
         Scene scene = scene_of(faces);
-        for (auto& p : scene.positions) p = glm::vec3(p);
+        const double tilt = 6 * any(random);
+        for (auto& p : scene.positions) p = glm::vec3(tilted(p, tilt));
 
-        const Mesh mesh = mesh_of(scene, 0.3 + any(random));
+        Mesh mesh = mesh_of(scene, 0.3 + any(random));
+        for (auto& p : mesh.vertices) p = tilted(p, -tilt);
 
         EXPECT_NEAR(floor_area(mesh), 16, 1e-5);
         EXPECT_GT(smallest_sine(mesh), 1e-5);
@@ -432,7 +487,7 @@ TEST(ContactSides, AreFewUnderManyBlocks) {
                                             {0.4 + 0.5 * x, 0.4 + 0.5 * y, 1}));
     const Mesh mesh = mesh_of(faces, 0.1);
 
-    EXPECT_EQ(std::ranges::max(floor_surface(mesh).side_of_patch), 1u);
+    EXPECT_EQ(floor_surface(mesh).side_count(), 2u);
 }
 
 /// side x side blocks on a floor.
@@ -464,9 +519,12 @@ TEST(ContactSpeed, OfFacesThatAllCoverEachOtherIsBounded) {
         add_face(scene, rectangle(1e-3 * i, 0, 50 + 1e-3 * i, 50 + 2e-3 * i));
     const auto start = std::clock();
 
-    mesh_of(scene, 20);
+    const Mesh mesh = mesh_of(scene, 20);
 
     EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 20);
+    EXPECT_TRUE(std::ranges::any_of(mesh.warnings, [](const std::string& warning) {
+        return warning == "hand.obj: too many faces touch to cut all along one another";
+    }));
 }
 
 }  // namespace
