@@ -8,7 +8,7 @@
 namespace hemirad::meshing {
 namespace {
 
-/// A look takes some hundred nanoseconds; a furnished hall needs two an edge.
+/// Bounds the time that faces which all cover each other take; an edge lies on one or two surfaces.
 constexpr double kFewestLooks = 4e6, kLooksAnEdge = 16;
 
 using Shared = std::span<const Edge>;

@@ -102,7 +102,10 @@ TEST(FindSplits, FindsNoneAtTheOutlineOfWhatStandsOnASurface) {
     for (const Patch& patch : mesh.patches)
         mesh.surfaces[0].side_of_patch.push_back(mesh.centroid(patch).x < 12 ? 1 : 0);
 
+    const auto edge_beneath = [](double x, double) { return x < 6 ? 1.0 : x < 12 ? 3.0 : 9.0; };
+
     EXPECT_EQ(splits(mesh, edge, 0.1), 0u);
+    EXPECT_EQ(splits(mesh, edge_beneath, 0.1), 2u * 4);
 }
 
 TEST(FindSplits, NeedsTwiceTheErrorAfterASplit) {
