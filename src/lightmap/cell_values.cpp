@@ -43,13 +43,13 @@ std::uint32_t largest_scale(const Surface& surface) {
 }  // namespace
 
 CellValues::CellValues(const Surface& surface, std::span<const double> areas,
-                       std::span<const double> values) {
+                       std::span<const double> values, std::uint32_t side) {
     for (std::uint32_t scale = 0; scale <= largest_scale(surface); ++scale) {
         const std::uint32_t columns = surface.columns >> scale, rows = surface.rows >> scale;
         std::vector<WeightedMean> means(std::size_t{columns} * rows);
         Grid grid{columns, rows, {}, std::vector<bool>(means.size())};
         for (std::uint32_t i = 0; i < surface.patch_count; ++i) {
-            if (surface.scale(i) > scale) continue;
+            if (surface.scale(i) > scale || surface.side(i) != side) continue;
             const std::uint32_t cell = surface.cell_of_patch[i];
             const std::size_t at = std::size_t{(cell / surface.columns) >> scale} * columns +
                                    ((cell % surface.columns) >> scale);
@@ -100,6 +100,14 @@ double CellValues::at_scale(std::uint32_t scale, std::int64_t column, std::int64
     const Grid& grid = grids_[scale];
     if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return kNone;
     return grid.values[static_cast<std::size_t>(row * grid.columns + column)];
+}
+
+std::vector<CellValues> cell_values_by_side(const Surface& surface, std::span<const double> areas,
+                                            std::span<const double> values) {
+    std::vector<CellValues> by_side;
+    for (std::uint32_t side = 0; side < surface.side_count(); ++side)
+        by_side.emplace_back(surface, areas, values, side);
+    return by_side;
 }
 
 }  // namespace hemirad

@@ -9,15 +9,15 @@
 
 namespace hemirad {
 
-/// A value for every cell of a surface's grid, from its patches'. On each scale, of cells of
-/// 2^scale cells of the grid a side, a cell has the mean of the patches in it, by area; where a
-/// patch covers more, what the next larger scale's cells give at its centre. So values vary over a
-/// large patch as they would over a coarse grid.
+/// A value for every cell of a surface's grid, from its patches' of one side. On each scale, of
+/// cells of 2^scale cells of the grid a side, a cell has the mean of the patches in it, by area;
+/// where a patch covers more, what the next larger scale's cells give at its centre. So values vary
+/// over a large patch as they would over a coarse grid.
 class CellValues {
   public:
-    /// Areas, in any unit, and values of the surface's patches.
+    /// Areas, in any unit, and values of the surface's patches; of those that are on `side`.
     CellValues(const Surface& surface, std::span<const double> areas,
-               std::span<const double> values);
+               std::span<const double> values, std::uint32_t side = 0);
 
     /// Bilinear between the centres of the grid's cells, at a position in cells; constant beyond
     /// the outermost ones. Cells without a value are left out; where all four about the position
@@ -40,5 +40,9 @@ class CellValues {
 
     std::vector<Grid> grids_;  ///< by scale
 };
+
+/// Of each side of the surface.
+std::vector<CellValues> cell_values_by_side(const Surface& surface, std::span<const double> areas,
+                                            std::span<const double> values);
 
 }  // namespace hemirad

@@ -51,10 +51,11 @@ double error_of(const CellValues& cells, const Surface& surface, std::uint32_t i
 
 void add_splits(const Mesh& mesh, const Surface& surface, std::span<const double> values,
                 double most, int levels, std::vector<bool>& split) {
-    const CellValues cells(surface, areas_of(mesh, surface),
-                           values.subspan(surface.first_patch, surface.patch_count));
+    const auto cells = cell_values_by_side(
+        surface, areas_of(mesh, surface), values.subspan(surface.first_patch, surface.patch_count));
     for (std::uint32_t i = 0; i < surface.patch_count; ++i)
-        if (error_of(cells, surface, i) > std::ldexp(most, levels - surface.scale_of_patch[i]))
+        if (error_of(cells[surface.side(i)], surface, i) >
+            std::ldexp(most, levels - surface.scale_of_patch[i]))
             split[surface.first_patch + i] = true;
 }
 

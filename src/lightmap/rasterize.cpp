@@ -85,16 +85,18 @@ Span texels_of(const Polygon& polygon, int axis, std::uint32_t start, std::uint3
             static_cast<std::uint32_t>(std::clamp(std::ceil(high), from, to))};
 }
 
-/// One texel of a chart: what part of it the surface fills, and which cell the most.
+/// One texel of a chart: what part of it the surface fills, and the cell and the side of the patch
+/// that fills the most.
 struct Footprint {
     double coverage = 0.0, largest = 0.0;
-    std::uint32_t cell = kNoCell;
+    std::uint32_t cell = kNoCell, side = 0;
 
-    void add(double area, std::uint32_t from_cell) {
+    void add(double area, std::uint32_t from_cell, std::uint32_t from_side) {
         coverage += area;
         if (area > largest) {
             largest = area;
             cell = from_cell;
+            side = from_side;
         }
     }
 };
@@ -110,7 +112,8 @@ struct ChartFootprint {
     }
 };
 
-void add_patch(ChartFootprint& footprint, const Polygon& polygon, std::uint32_t cell) {
+void add_patch(ChartFootprint& footprint, const Polygon& polygon, std::uint32_t cell,
+               std::uint32_t side) {
     const Chart& chart = footprint.chart;
     const Span rows = texels_of(polygon, 1, chart.y, chart.height);
     for (std::uint32_t y = rows.first; y < rows.last; ++y) {
@@ -118,7 +121,7 @@ void add_patch(ChartFootprint& footprint, const Polygon& polygon, std::uint32_t 
         if (strip.count < 3) continue;
         const Span columns = texels_of(strip, 0, chart.x, chart.width);
         for (std::uint32_t x = columns.first; x < columns.last; ++x) {
-            footprint.at(x, y).add(area_of(clip_to_slab(strip, 0, x)), cell);
+            footprint.at(x, y).add(area_of(clip_to_slab(strip, 0, x)), cell, side);
         }
     }
     footprint.patch_areas.push_back(area_of(polygon));
@@ -130,7 +133,8 @@ ChartFootprint footprint_of(const Mesh& mesh, const Chart& chart) {
     footprint.texels.resize(std::size_t{chart.width} * chart.height);
     for (std::uint32_t i = 0; i < surface.patch_count; ++i) {
         const Patch& patch = mesh.patches[surface.first_patch + i];
-        add_patch(footprint, in_atlas(mesh, chart, patch), surface.cell_of_patch[i]);
+        add_patch(footprint, in_atlas(mesh, chart, patch), surface.cell_of_patch[i],
+                  surface.side(i));
     }
     return footprint;
 }
@@ -154,16 +158,19 @@ void write_coverage(Lightmap& lightmap, ChartFootprint& footprint) {
 void write_band(Lightmap& lightmap, std::size_t band, ChartFootprint& footprint,
                 const Surface& surface, std::span<const double> patch_values) {
     const Chart& chart = footprint.chart;
-    const CellValues cells(surface, footprint.patch_areas,
-                           patch_values.subspan(surface.first_patch, surface.patch_count));
+    const auto cells_by_side =
+        cell_values_by_side(surface, footprint.patch_areas,
+                            patch_values.subspan(surface.first_patch, surface.patch_count));
     const glm::dvec2 cells_a_texel = chart.texel_size / surface.cell_size;
     for (std::uint32_t y = chart.y; y < chart.y + chart.height; ++y) {
         for (std::uint32_t x = chart.x; x < chart.x + chart.width; ++x) {
             const std::size_t texel = std::size_t{y} * lightmap.width + x;
             if (lightmap.coverage[texel] == 0.0f) continue;
             const glm::dvec2 centre(x - chart.x + 0.5, chart.y + chart.height - y - 0.5);
+            const Footprint& from = footprint.at(x, y);
+            const CellValues& cells = cells_by_side[from.side];
             lightmap.values[band][texel] =
-                static_cast<float>(cells.at(centre * cells_a_texel, footprint.at(x, y).cell));
+                static_cast<float>(cells.at(centre * cells_a_texel, from.cell));
         }
     }
 }

@@ -2,12 +2,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "errors.h"
 #include "scene/cut_surface.h"
 #include "scene/edges.h"
 #include "scene/face_warnings.h"
+#include "scene/find_contacts.h"
 #include "scene/find_overlaps.h"
 #include "scene/find_parts.h"
 #include "scene/flat_faces.h"
@@ -60,8 +62,11 @@ class Mesher {
         groups_ = std::isinf(settings_.patch_size)
                       ? group_singly(faces_)
                       : group_coplanar(scene_, faces_, edges, vertices_.positions(), precision_);
+        if (!std::isinf(settings_.patch_size))
+            contacts_.emplace(faces_, edges, groups_, vertices_.positions(), precision_);
         add_fronts();
         add_backs();
+        look_for_contacts_left();
         forget_lone_shooters();
         combine_fragments();
         keep_used_vertices();
@@ -128,7 +133,7 @@ class Mesher {
         mesh_.warnings.insert(mesh_.warnings.end(), faces_.warnings.begin(), faces_.warnings.end());
     }
 
-    Grids grids_of(const Group& group) const {
+    Grids grids_of(const Group& group) {
         Grids grids{lay_grid(scene_, faces_, group, vertices_.positions(), precision_,
                              settings_.patch_size),
                     {}};
@@ -136,7 +141,14 @@ class Mesher {
             divide_cells(scene_, grids.patches, precision_, settings_.element_size);
         for (std::uint32_t level = 0; level <= settings_.split_levels; ++level)
             grids.elements.push_back(halve_cells(scene_, elements, level));
+        if (contacts_) grids.contacts = contacts_on(group, grids.patches);
         return grids;
+    }
+
+    std::vector<Contact> contacts_on(const Group& group, const Surface& grid) {
+        const bool is_mirrored = back_of(group) == Back::mirror;
+        return contacts_->on(static_cast<std::uint32_t>(&group - groups_.data()), grid,
+                             is_mirrored ? Sides::both : Sides::front);
     }
 
     CutSurface cut(const Group& group, Grids grids) {
@@ -213,6 +225,12 @@ class Mesher {
 
     void forget_lone_shooters() {
         if (mesh_.shooters.size() == mesh_.patches.size()) mesh_.shooters = {};
+    }
+
+    void look_for_contacts_left() {
+        if (contacts_ && !contacts_->complete())
+            mesh_.warnings.push_back(scene_.file +
+                                     ": too many faces touch to cut all along one another");
     }
 
     void look_for_overlaps() {
@@ -296,6 +314,7 @@ class Mesher {
     FlatFaces faces_;
     Parts parts_;
     std::vector<Group> groups_;
+    std::optional<ContactFinder> contacts_;   ///< none where patches are polygons of the input
     std::vector<const Group*> front_groups_;  ///< of each front surface
     Mesh mesh_;
 };

@@ -19,11 +19,8 @@ struct CellPiece {
     Polygon polygon;
 };
 
-/// Cuts the group's faces along the surface's grid; sorted by cell. New vertices go to the welder.
-///
-/// A vertex within Precision::plane of a grid line counts as on it and stays where it is, so
-/// nothing is moved and no sliver arises beside a line. Both faces of an edge that crosses a line
-/// get the same vertex there: the second one's differs by rounding only and is welded.
+/// Cuts the group's faces along the surface's grid, to Precision::plane; sorted by cell. New
+/// vertices go to the welder.
 std::vector<CellPiece> cut_into_cells(const FlatFaces& faces, const Group& group,
                                       const Surface& surface, const Precision& precision,
                                       VertexWelder& vertices);

@@ -5,8 +5,11 @@
 #include <utility>
 
 #include "scene/cut_cells.h"
+#include "scene/cut_contacts.h"
+#include "scene/find_sides.h"
 #include "scene/merge_pieces.h"
 #include "scene/polygon.h"
+#include "scene/split_polygon.h"
 
 namespace hemirad::meshing {
 namespace {
@@ -55,6 +58,11 @@ class SurfaceCutter {
         : grids_(std::move(grids)),
           precision_(precision),
           vertices_(vertices),
+          splitter_({grids_.patches.origin, grids_.patches.u_axis, grids_.patches.v_axis,
+                     grids_.patches.normal},
+                    vertices, NewVertices::on_edges),
+          slack_(contact_slack(grids_.patches, precision)),
+          contacts_(std::move(grids_.contacts), grids_.patches, slack_),
           cut_{grids_.elements.back(), {}, {}, {}} {}
 
     void cut(const FlatFaces& faces, const Group& group, Merging merging) {
@@ -62,6 +70,7 @@ class SurfaceCutter {
         for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
             while (end < pieces.size() && pieces[end].cell == pieces[begin].cell) ++end;
             const Cell cell(&pieces[begin], end - begin);
+            contacts_here_ = contacts_.in(pieces[begin].cell);
             const auto polygons = merging == Merging::none ? unmerged(cell, precision_.plane)
                                                            : merge_pieces(cell, precision_.plane);
             for (const MergedPiece& merged : polygons)
@@ -69,14 +78,20 @@ class SurfaceCutter {
         }
     }
 
-    CutSurface take() { return std::move(cut_); }
+    CutSurface take() {
+        if (!marks_.empty())
+            cut_.surface.side_of_patch = find_sides(cut_.shooters, cut_.surface, marks_);
+        return std::move(cut_);
+    }
 
   private:
     void add(const MergedPiece& merged, Cell cell) {
         const auto first_patch = static_cast<std::uint32_t>(cut_.patches.size());
         elements_.clear();
-        for (const Polygon& shooter : cut_into_quads(merged.polygon, precision_.plane))
-            add_shooter({cell.front().cell, 0, shooter});
+        for (const Polygon& part :
+             cut_along_contacts(merged.polygon, contacts_here_, slack_, precision_, splitter_))
+            for (const Polygon& shooter : cut_into_quads(part, precision_.plane))
+                add_shooter({cell.front().cell, 0, shooter});
         if (elements_.empty()) return;
         for (const std::uint32_t piece : merged.pieces)
             share_out(cell[piece], elements_, first_patch, cut_.fragments);
@@ -92,8 +107,9 @@ class SurfaceCutter {
         else
             add_element(0, shooter.cell, shooter.polygon);
         const auto count = static_cast<std::uint32_t>(cut_.patches.size()) - first_patch;
-        if (count > 0)
-            cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count});
+        if (count == 0) return;
+        cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count});
+        marks_.add(shooter.polygon, contacts_here_, slack_);
     }
 
     void cut_along(std::size_t level, const CellPiece& piece) {
@@ -146,6 +162,11 @@ class SurfaceCutter {
     Grids grids_;
     Precision precision_;
     VertexWelder& vertices_;
+    PolygonSplitter splitter_;
+    double slack_;
+    ContactGrid contacts_;
+    std::vector<Contact> contacts_here_;  ///< of the cell that is being filled
+    ContactMarks marks_;
     CutSurface cut_;
     std::vector<Polygon> elements_;  ///< of the patches that are being added
 };

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "scene/contact.h"
 #include "scene/flat_faces.h"
 #include "scene/group_flats.h"
 #include "scene/mesh.h"
@@ -27,13 +28,15 @@ struct Grids {
     Surface patches;
     std::vector<Surface> elements;
     Depths depths = {};
+    std::vector<Contact> contacts = {};  ///< along which the surface is cut, too
 };
 
 enum class Merging { in_cells, none };
 
 /// Fills the coarse grid with shooters: quads where the surface's faces fill a cell, triangles and
-/// quads where its outline runs through one. Then each shooter along the grid of elements,
-/// likewise, and further where depths say so. The surface that comes back has the finest grid.
+/// quads where its outline or a contact runs through one. Then each shooter along the grid of
+/// elements, likewise, and further where depths say so. The surface that comes back has the finest
+/// grid.
 CutSurface cut_surface(const FlatFaces& faces, const Group& group, Grids grids, Merging merging,
                        const Precision& precision, VertexWelder& vertices);
 

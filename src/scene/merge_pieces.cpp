@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "scene/disjoint_sets.h"
 #include "scene/edges.h"
@@ -18,23 +19,30 @@ struct SharedEdge {
 /// How the pieces of a cell hang together.
 struct Seams {
     std::vector<SharedEdge> shared;
-    std::vector<Edge> outer;
+    std::vector<SharedEdge> barred;  ///< shared by what must not be joined
+    std::vector<Edge> outer;         ///< with both directions of the barred ones
 };
 
-Seams find_seams(std::span<const CellPiece> cell) {
+Seams find_seams(std::span<const CellPiece> cell, const Barriers& barriers) {
     std::vector<Edge> edges;
+    std::set<std::uint64_t> barred;
     for (std::uint32_t p = 0; p < cell.size(); ++p) {
         const Polygon& polygon = cell[p].polygon;
-        for (std::size_t i = 0; i < polygon.size(); ++i)
-            edges.emplace_back(polygon[i].vertex, polygon[(i + 1) % polygon.size()].vertex, p);
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+            edges.emplace_back(a.vertex, b.vertex, p);
+            if (barriers.part(a, b)) barred.insert(edges.back().key);
+        }
     }
     sort_edges(edges);
     Seams seams;
     for_each_shared(edges, [&](std::span<const Edge> same) {
-        if (same.size() == 2 && same[0].ascending != same[1].ascending)
-            seams.shared.push_back({same[0].from(), same[0].to(), same[0].owner, same[1].owner});
-        else
-            seams.outer.insert(seams.outer.end(), same.begin(), same.end());
+        const bool shared = same.size() == 2 && same[0].ascending != same[1].ascending;
+        const bool joins = shared && !barred.contains(same[0].key);
+        if (shared)
+            (joins ? seams.shared : seams.barred)
+                .push_back({same[0].from(), same[0].to(), same[0].owner, same[1].owner});
+        if (!joins) seams.outer.insert(seams.outer.end(), same.begin(), same.end());
     });
     return seams;
 }
@@ -103,10 +111,10 @@ class PairwiseMerge {
         for (const std::uint32_t p : pieces) outlines_[p] = cell[p].polygon;
     }
 
-    void run(std::span<const SharedEdge> shared) {
+    void run(std::span<const SharedEdge> shared, std::span<const SharedEdge> barred) {
         for (bool joined = true; joined;) {
             joined = false;
-            for (const SharedEdge& edge : shared) joined |= try_join(edge);
+            for (const SharedEdge& edge : shared) joined |= try_join(edge, barred);
         }
     }
 
@@ -121,18 +129,25 @@ class PairwiseMerge {
     }
 
   private:
-    bool try_join(const SharedEdge& edge) {
+    bool try_join(const SharedEdge& edge, std::span<const SharedEdge> barred) {
         // Keeps each attempt cheap where a cell holds thousands of tiny faces.
         constexpr std::size_t kLongestOutline = 64;
         const std::uint32_t left = sets_.find(edge.left);
         const std::uint32_t right = sets_.find(edge.right);
-        if (left == right) return false;
+        if (left == right || are_parted(left, right, barred)) return false;
         if (outlines_[left].size() + outlines_[right].size() > kLongestOutline) return false;
         Polygon joined = join(outlines_[left], outlines_[right], edge);
         if (!is_convex(without_straight_corners(joined, precision_))) return false;
         sets_.join(left, right);
         outlines_[std::min(left, right)] = std::move(joined);
         return true;
+    }
+
+    bool are_parted(std::uint32_t a, std::uint32_t b, std::span<const SharedEdge> barred) {
+        return std::ranges::any_of(barred, [&](const SharedEdge& edge) {
+            const std::uint32_t left = sets_.find(edge.left), right = sets_.find(edge.right);
+            return (left == a && right == b) || (left == b && right == a);
+        });
     }
 
     DisjointSets sets_;
@@ -143,7 +158,7 @@ class PairwiseMerge {
 /// One connected component of a cell's pieces.
 struct Component {
     std::vector<std::uint32_t> pieces;
-    std::vector<SharedEdge> shared;
+    std::vector<SharedEdge> shared, barred;
     std::vector<Edge> outer;
 };
 
@@ -154,6 +169,8 @@ std::vector<Component> find_components(std::span<const CellPiece> cell, const Se
     for (std::uint32_t p = 0; p < cell.size(); ++p) at_root[sets.find(p)].pieces.push_back(p);
     for (const SharedEdge& edge : seams.shared)
         at_root[sets.find(edge.left)].shared.push_back(edge);
+    for (const SharedEdge& edge : seams.barred)
+        at_root[sets.find(edge.left)].barred.push_back(edge);
     for (const Edge& edge : seams.outer) at_root[sets.find(edge.owner)].outer.push_back(edge);
     std::erase_if(at_root, [](const Component& component) { return component.pieces.empty(); });
     return at_root;
@@ -171,16 +188,22 @@ std::optional<MergedPiece> merge_whole(std::span<const CellPiece> cell, const Co
 
 }  // namespace
 
-std::vector<MergedPiece> merge_pieces(std::span<const CellPiece> cell, double precision) {
+bool Barriers::part(const Corner& a, const Corner& b) const {
+    return std::ranges::any_of(
+        contacts, [&](const Contact& contact) { return runs_along(contact, a.at, b.at, slack); });
+}
+
+std::vector<MergedPiece> merge_pieces(std::span<const CellPiece> cell, double precision,
+                                      const Barriers& barriers) {
     if (cell.size() == 1) return {{without_straight_corners(cell.front().polygon, precision), {0}}};
     std::vector<MergedPiece> merged;
-    for (const Component& component : find_components(cell, find_seams(cell))) {
+    for (const Component& component : find_components(cell, find_seams(cell, barriers))) {
         if (auto whole = merge_whole(cell, component, precision)) {
             merged.push_back(std::move(*whole));
             continue;
         }
         PairwiseMerge pairs(cell, component.pieces, precision);
-        pairs.run(component.shared);
+        pairs.run(component.shared, component.barred);
         for (MergedPiece& piece : pairs.take(component.pieces)) merged.push_back(std::move(piece));
     }
     return merged;

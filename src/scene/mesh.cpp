@@ -1,5 +1,6 @@
 #include "scene/mesh.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 
 namespace hemirad {
@@ -13,6 +14,10 @@ glm::dvec3 area_vector(const std::vector<glm::dvec3>& vertices, const Patch& pat
 }
 
 }  // namespace
+
+std::uint32_t Surface::side_count() const {
+    return side_of_patch.empty() ? 1 : std::ranges::max(side_of_patch) + 1u;
+}
 
 std::size_t Mesh::shooter_count() const {
     return shooters.empty() ? patches.size() : shooters.size();

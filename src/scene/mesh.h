@@ -48,15 +48,23 @@ struct Surface {
     std::uint32_t columns = 1, rows = 1;
     std::uint32_t first_patch = 0, patch_count = 0;  ///< its patches are consecutive
     /// For each of its patches the grid cell it lies in, row * columns + column. A cell that the
-    /// outline cuts holds several patches, one outside the outline none.
+    /// outline cuts, or that of another surface in its plane, holds several patches, one outside
+    /// the outline none.
     std::vector<std::uint32_t> cell_of_patch;
     /// Where patches were split: for each the power of two of cells a side that it covers, from its
     /// cell to the right and upwards. Empty: one cell each.
     std::vector<std::uint8_t> scale_of_patch;
+    /// Where other surfaces stand on it: patches near each other of which one is under what stands
+    /// there and one beside it, or which it parts, have different sides. Empty: one side.
+    std::vector<std::uint8_t> side_of_patch;
 
     std::uint32_t scale(std::uint32_t i) const {
         return scale_of_patch.empty() ? 0 : scale_of_patch[i];
     }
+    std::uint32_t side(std::uint32_t i) const {
+        return side_of_patch.empty() ? 0 : side_of_patch[i];
+    }
+    std::uint32_t side_count() const;
 };
 
 /// How much of an input face ended up in which patch.
@@ -125,7 +133,9 @@ struct MeshSettings {
 };
 
 /// Cuts a scene into patches: welds, drops degenerate and duplicate faces (with warnings that give
-/// coordinates), finds surfaces, lays the grid, adds the backs that `settings.backfaces` asks for.
+/// coordinates), finds surfaces, lays the grid, cuts along the edges of others that lie on them
+/// (where a block stands on a floor, no patch lies partly under it; not with an infinite patch
+/// size), adds the backs that `settings.backfaces` asks for.
 /// Throws InputError where nothing is left.
 Mesh build_mesh(const Scene& scene, const MeshSettings& settings);
 

@@ -14,6 +14,9 @@ class VertexWelder {
     explicit VertexWelder(double tolerance, std::size_t expected = 0);
 
     std::uint32_t add(const glm::dvec3& position);
+    /// The same, but only positions that differ by no more than rounding become one: where a vertex
+    /// has to lie on an edge.
+    std::uint32_t add_apart(const glm::dvec3& position);
     void move(std::uint32_t vertex, const glm::dvec3& to);
 
     const std::vector<glm::dvec3>& positions() const { return positions_; }
@@ -24,8 +27,9 @@ class VertexWelder {
 
     Cell cell_of(const glm::dvec3& position) const;
     std::uint32_t bucket_of(const Cell& cell) const;
-    std::uint32_t find_in(const Cell& cell, const glm::dvec3& position) const;
-    std::uint32_t find(const glm::dvec3& position) const;
+    std::uint32_t add(const glm::dvec3& position, double tolerance);
+    std::uint32_t find_in(const Cell& cell, const glm::dvec3& position, double tolerance) const;
+    std::uint32_t find(const glm::dvec3& position, double tolerance) const;
     void link(std::uint32_t vertex);
     void unlink(std::uint32_t vertex);
     void grow();

@@ -96,6 +96,18 @@ TEST(FindSplits, FindsEndsOfAGradientAndNothingBetween) {
     EXPECT_EQ(splits(floor_split_left_of(0), gradient, 0.1), 0u);
 }
 
+TEST(FindSplits, FindsNoneAtTheOutlineOfWhatStandsOnASurface) {
+    const auto edge = [](double x, double) { return x < 12 ? 0.0 : 3.0; };
+    Mesh mesh = floor_split_left_of(0);
+    for (const Patch& patch : mesh.patches)
+        mesh.surfaces[0].side_of_patch.push_back(mesh.centroid(patch).x < 12 ? 1 : 0);
+
+    const auto edge_beneath = [](double x, double) { return x < 6 ? 1.0 : x < 12 ? 3.0 : 9.0; };
+
+    EXPECT_EQ(splits(mesh, edge, 0.1), 0u);
+    EXPECT_EQ(splits(mesh, edge_beneath, 0.1), 2u * 4);
+}
+
 TEST(FindSplits, NeedsTwiceTheErrorAfterASplit) {
     // The edge is estimated as a quarter of its height, of a mean of 2.25.
     const auto edge = [](double x, double) { return x < 4 ? 3.0 : 2.0; };

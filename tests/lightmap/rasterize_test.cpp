@@ -90,6 +90,41 @@ TEST(Rasterize, ACellTakesTheAreaWeightedMeanOfItsPatches) {
     EXPECT_EQ(lightmap.values[0][texel_at(lightmap, 2, 2)], 5.0f);
 }
 
+/// Four cells a metre wide side by side; a block stands on x < 1.5, in the dark.
+Mesh half_covered_mesh() {
+    Mesh mesh;
+    mesh.bands = {"Y"};
+    add_surface(mesh, 4, 1, {1, 1});
+    add_whole_cell(mesh, 0, 0);
+    add_patch(mesh, 1, {{1, 0}, {1.5, 0}, {1.5, 1}, {1, 1}});
+    add_patch(mesh, 1, {{1.5, 0}, {2, 0}, {2, 1}, {1.5, 1}});
+    add_whole_cell(mesh, 2, 0);
+    add_whole_cell(mesh, 3, 0);
+    mesh.surfaces[0].side_of_patch = {1, 1, 0, 0, 0};
+    return mesh;
+}
+
+TEST(Rasterize, TexelsTakeTheLightOfTheirOwnSideOfABlock) {
+    const Mesh mesh = half_covered_mesh();
+    const auto lightmap = rasterized(mesh, solution_of({0, 0, 8, 8, 8}), 0.125);
+
+    const Chart chart = lay_out_charts(mesh, {.texel_size = 0.125}).charts[0];
+    for (std::uint32_t x = 0; x < 32; ++x)
+        EXPECT_EQ(lightmap.values[0][texel_at(lightmap, chart.x + x, chart.y + 3)],
+                  x < 12 ? 0.0f : 8.0f)
+            << x;
+}
+
+TEST(Rasterize, ATexelOnTheOutlineOfABlockTakesTheSideOfItsLargerPart) {
+    const Mesh mesh = half_covered_mesh();
+    const auto lightmap = rasterized(mesh, solution_of({0, 0, 8, 8, 8}), 0.4);
+
+    // Of the texel from 1.2 to 1.6 m three quarters are covered.
+    const Chart chart = lay_out_charts(mesh, {.texel_size = 0.4}).charts[0];
+    EXPECT_EQ(lightmap.values[0][texel_at(lightmap, chart.x + 3, chart.y)], 0.0f);
+    EXPECT_EQ(lightmap.values[0][texel_at(lightmap, chart.x + 4, chart.y)], 8.0f);
+}
+
 TEST(Rasterize, CellsWithoutAPatchAreLeftOut) {
     Mesh mesh;
     add_surface(mesh, 3, 1, {1, 1});

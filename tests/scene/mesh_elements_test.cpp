@@ -288,6 +288,74 @@ TEST(SplitElements, OfBacksAreTheirOwn) {
     }
 }
 
+/// The floor is the first surface, the block's bottom the second.
+Scene turned_block_on_a_floor(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(0, 6);
+    Faces faces{rectangle(0, 0, 3, 2)};
+    const double c = std::cos(any(random)), s = std::sqrt(1 - c * c);
+    for (auto face : solid_box({-0.8, -0.6, 0}, {0.7, 0.5, 1})) {
+        for (auto& p : face) p = {1.5 + c * p.x - s * p.y, 1 + s * p.x + c * p.y, p.z};
+        faces.push_back(face);
+    }
+    return scene_of(faces);
+}
+
+void expect_none_straddles(const Scene& scene, const Mesh& mesh, const Patch& patch) {
+    const auto& bottom = scene.faces[1].vertices;
+    int inside = 0, outside = 0;
+    for (const auto& corner : corners_of(mesh, patch)) {
+        double depth = 1e9;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto &a = scene.positions[bottom[i]], &b = scene.positions[bottom[(i + 1) % 4]];
+            // Clockwise from above: inwards is to the right.
+            const glm::dvec3 in = glm::cross(glm::normalize(b - a), glm::dvec3(0, 0, 1));
+            depth = std::min(depth, glm::dot(in, corner - a));
+        }
+        if (depth > 1e-3) ++inside;
+        if (depth < -1e-3) ++outside;
+    }
+    EXPECT_TRUE(inside == 0 || outside == 0);
+}
+
+TEST(Elements, AndShootersEndWhereABlockStands) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Scene scene = turned_block_on_a_floor(seed);
+        const Mesh mesh = two_levels(scene, 0.7, 0.13, Backfaces::cull);
+
+        for (const Shooter& shooter : mesh.shooters)
+            if (shooter.surface == 0)
+                expect_none_straddles(scene, mesh, {shooter.corners, shooter.surface});
+        for (const Patch& element : mesh.patches)
+            if (element.surface == 0) expect_none_straddles(scene, mesh, element);
+        expect_nested(mesh);
+        expect_in_cells(mesh);
+        expect_whole_faces(scene, mesh);
+    }
+}
+
+TEST(SplitElements, EndWhereABlockStandsAndKeepTheirSides) {
+    std::mt19937 random(9);
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Scene scene = turned_block_on_a_floor(seed);
+        const MeshSettings settings{.patch_size = 0.7,
+                                    .element_size = 0.3,
+                                    .split_levels = 2,
+                                    .backfaces = Backfaces::cull};
+        const Mesh whole = build_mesh(scene, settings);
+        const Mesh mesh = split_at_random(scene, settings, random);
+
+        EXPECT_GT(mesh.patches.size(), whole.patches.size());
+        ASSERT_EQ(mesh.surfaces[0].side_of_patch.size(), mesh.surfaces[0].patch_count);
+        EXPECT_EQ(mesh.surfaces[0].side_count(), 2u);
+        for (const Patch& element : mesh.patches)
+            if (element.surface == 0) expect_none_straddles(scene, mesh, element);
+        expect_nested(mesh);
+        expect_in_cells(mesh);
+        expect_whole_faces(scene, mesh);
+    }
+}
+
 TEST(Elements, TooSmallAreRefused) {
     const Scene scene = scene_of({rectangle(0, 0, 1, 1)});
 

@@ -36,6 +36,17 @@ TEST(Closure, NothingEscapesThroughTJunctionsOfRotatedRooms) {
     }
 }
 
+// A block on the floor, turned against it, and one on that, cut what they stand on at any angle.
+TEST(Closure, NothingEscapesWhereFloorsAreCutAlongBlocks) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(0, 1);
+    for (int round = 0; round < 8; ++round) {
+        Scene scene = room_with_turned_blocks(any(random));
+        if (round % 2 == 1) scene = rotated(std::move(scene), random_rotation(random));
+        expect_nothing_escapes(meshed(scene, 0.2 + any(random)), round % 4 < 2 ? 64 : 256, 2);
+    }
+}
+
 TEST(Closure, NothingEscapesFromARotatedHall) {
     std::mt19937 random(2);
     const Scene scene = rotated(scene_named("hall2k.obj"), random_rotation(random));

@@ -58,6 +58,22 @@ inline Scene furnished_room() {
     return scene;
 }
 
+/// Closed: a block on the floor, and a smaller one that hangs over its border, at angles in turns.
+inline Scene room_with_turned_blocks(double turns) {
+    Scene scene = furnished_room();
+    scene.faces.resize(5 + 9);
+    const auto add_block = [&](glm::dvec3 middle, glm::dvec3 half, double angle, int object) {
+        const double c = std::cos(angle), s = std::sin(angle);
+        for (auto face : solid_box(-half, half)) {
+            for (auto& p : face) p = middle + glm::dvec3(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
+            add_face(scene, face, 2, static_cast<std::uint32_t>(object));
+        }
+    };
+    add_block({2.5, 1.9, 0.5}, {0.8, 0.5, 0.5}, 7 * turns, 2);
+    add_block({3.1, 2.1, 1.2}, {0.6, 0.3, 0.2}, 11 * turns, 4);
+    return scene;
+}
+
 inline Scene scaled(Scene scene, double factor) {
     for (auto& position : scene.positions) position *= factor;
     return scene;
