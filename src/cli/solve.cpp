@@ -200,7 +200,7 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
         const auto split =
             find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound);
         if (std::ranges::find(split, true) == split.end()) return;
-        work.mesh = split_elements(work.scene, options.mesh, work.mesh, split);
+        work.mesh = split_mesh(work.scene, options.mesh, work.mesh, {split});
         require_memory(work, options, device.summary());
     }
 }
