@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
@@ -184,11 +185,6 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
     return coarser;
 }
 
-bool is_nothing(const Splits& splits) {
-    return std::ranges::find(splits.elements, true) == splits.elements.end() &&
-           std::ranges::find(splits.shooters, true) == splits.shooters.end();
-}
-
 /// Solutions of the dial's coarsest step tell where elements and patches are to be split.
 void split_where_light_varies(Work& work, const SolveOptions& options, const mp1map::Device& device,
                               const Interrupts& interrupts) {
@@ -206,8 +202,11 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
         const Splits splits{
             find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound),
             find_shooter_splits(work.mesh, outcome.solution, kShooterBound)};
-        if (is_nothing(splits)) return;
-        work.mesh = split_mesh(work.scene, options.mesh, work.mesh, splits);
+        Mesh finer = split_mesh(work.scene, options.mesh, work.mesh, splits);
+        if (finer.patches.size() == work.mesh.patches.size() &&
+            finer.shooter_count() == work.mesh.shooter_count())
+            return;
+        work.mesh = std::move(finer);
         require_memory(work, options, device.summary());
     }
 }
