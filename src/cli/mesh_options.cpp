@@ -38,7 +38,8 @@ void add_split(CLI::App& command, MeshSettings& settings) {
     constexpr std::uint64_t kMostLevels = 8;
     add_value(command,
               {"--split", "LEVELS",
-               "elements are split in four so often, where light changes within them [0]"},
+               "elements are split in four so often, where light changes within them, and patches, "
+               "where that matters to what stands near [0]"},
               [&](const OptionValue& value) {
                   settings.split_levels =
                       static_cast<std::uint32_t>(whole_number(value, 0, kMostLevels));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
@@ -23,6 +24,7 @@
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
+#include "solver/find_shooter_splits.h"
 
 namespace hemirad {
 namespace {
@@ -183,10 +185,10 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
     return coarser;
 }
 
-/// Solutions of the dial's coarsest step tell where elements are to be split.
+/// Solutions of the dial's coarsest step tell where elements and patches are to be split.
 void split_where_light_varies(Work& work, const SolveOptions& options, const mp1map::Device& device,
                               const Interrupts& interrupts) {
-    constexpr double kBound = 0.02, kTolerance = 1e-2;
+    constexpr double kBound = 0.02, kShooterBound = 0.01, kTolerance = 1e-2;
     SolveOptions pilot = without_snapshots(options);
     pilot.quiet = true;
     pilot.solver.resolution = pilot.solver.shooter_samples = 0;
@@ -197,10 +199,14 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
     for (std::uint32_t level = 0; level < options.mesh.split_levels; ++level) {
         const auto outcome = solve_once(work, pilot, device, interrupts);
         if (outcome.stop != Stop::converged) return;
-        const auto split =
-            find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound);
-        if (std::ranges::find(split, true) == split.end()) return;
-        work.mesh = split_elements(work.scene, options.mesh, work.mesh, split);
+        const Splits splits{
+            find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound),
+            find_shooter_splits(work.mesh, outcome.solution, kShooterBound)};
+        Mesh finer = split_mesh(work.scene, options.mesh, work.mesh, splits);
+        if (finer.patches.size() == work.mesh.patches.size() &&
+            finer.shooter_count() == work.mesh.shooter_count())
+            return;
+        work.mesh = std::move(finer);
         require_memory(work, options, device.summary());
     }
 }

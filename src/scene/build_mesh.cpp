@@ -27,6 +27,11 @@
 namespace hemirad::meshing {
 namespace {
 
+/// Of a surface.
+struct SplitDepths {
+    Depths elements, shooters;
+};
+
 enum class Back { none, absorber, mirror };
 
 double total_area(const Scene& scene) {
@@ -46,7 +51,7 @@ Depths mirrored(Depths depths, std::uint32_t columns) {
 /// Turns a scene into a mesh, a stage a function, in the order of `run`.
 class Mesher {
   public:
-    Mesher(const Scene& scene, const MeshSettings& settings, std::vector<Depths> depths = {})
+    Mesher(const Scene& scene, const MeshSettings& settings, std::vector<SplitDepths> depths = {})
         : scene_(scene),
           settings_(settings),
           depths_(std::move(depths)),
@@ -141,6 +146,8 @@ class Mesher {
             divide_cells(scene_, grids.patches, precision_, settings_.element_size);
         for (std::uint32_t level = 0; level <= settings_.split_levels; ++level)
             grids.elements.push_back(halve_cells(scene_, elements, level));
+        for (std::uint32_t level = 0; level < settings_.split_levels; ++level)
+            grids.split_shooters.push_back(shooters_in(grids));
         if (contacts_) grids.contacts = contacts_on(group, grids.patches);
         return grids;
     }
@@ -151,6 +158,16 @@ class Mesher {
                              is_mirrored ? Sides::both : Sides::front);
     }
 
+    /// The next of its grids of shooters.
+    static Surface shooters_in(const Grids& grids) {
+        const Surface& last =
+            grids.split_shooters.empty() ? grids.patches : grids.split_shooters.back();
+        for (const Surface& elements : grids.elements)
+            if (elements.columns > last.columns || elements.rows > last.rows)
+                return part_cells(last, elements);
+        return last;
+    }
+
     CutSurface cut(const Group& group, Grids grids) {
         const auto merging = std::isinf(settings_.patch_size) ? Merging::none : Merging::in_cells;
         return cut_surface(faces_, group, std::move(grids), merging, precision_, vertices_);
@@ -158,10 +175,10 @@ class Mesher {
 
     /// Of the group that comes next: of the next surface, if the group is that one, and not one of
     /// which nothing was left.
-    Depths depths_for(const Surface& grid) const {
+    SplitDepths depths_for(const Surface& grid) const {
         const std::size_t next = mesh_.surfaces.size();
         const std::size_t cells = std::size_t{grid.columns} * grid.rows;
-        if (next >= depths_.size() || depths_[next].size() != cells) return {};
+        if (next >= depths_.size() || depths_[next].elements.size() != cells) return {};
         return depths_[next];
     }
 
@@ -169,7 +186,9 @@ class Mesher {
         for (const Group& group : groups_) {
             const std::size_t index = mesh_.surfaces.size();
             Grids grids = grids_of(group);
-            grids.depths = depths_for(grids.elements.back());
+            const auto [elements, shooters] = depths_for(grids.elements.back());
+            grids.depths = elements;
+            grids.shooter_depths = shooters;
             append(cut(group, std::move(grids)), mesh_);
             if (mesh_.surfaces.size() > index) front_groups_.push_back(&group);
         }
@@ -219,12 +238,18 @@ class Mesher {
 
     CutSurface mirror_behind(const Group& group) {
         Grids grids = grids_of(group);
-        grids.depths = mirrored(depths_for(grids.elements.back()), grids.elements.back().columns);
+        const std::uint32_t columns = grids.elements.back().columns;
+        const auto [elements, shooters] = depths_for(grids.elements.back());
+        grids.depths = mirrored(elements, columns);
+        grids.shooter_depths = mirrored(shooters, columns);
         return turn_over(cut(group, std::move(grids)));
     }
 
+    // But not how often they were split.
     void forget_lone_shooters() {
-        if (mesh_.shooters.size() == mesh_.patches.size()) mesh_.shooters = {};
+        if (mesh_.shooters.size() == mesh_.patches.size() &&
+            std::ranges::all_of(mesh_.shooters, [](const auto& s) { return s.splits == 0; }))
+            mesh_.shooters = {};
     }
 
     void look_for_contacts_left() {
@@ -308,7 +333,7 @@ class Mesher {
 
     const Scene& scene_;
     MeshSettings settings_;
-    std::vector<Depths> depths_;  ///< of each surface, or none
+    std::vector<SplitDepths> depths_;  ///< of each surface, or none
     Precision precision_;
     VertexWelder vertices_;
     FlatFaces faces_;
@@ -319,19 +344,49 @@ class Mesher {
     Mesh mesh_;
 };
 
-// By cell of the surface's grid, how often what lies there was split; `split` once more.
-Depths depths_of(const Surface& surface, std::uint32_t levels, const std::vector<bool>& split) {
+// Of what lies in the cells of the surface's patch `i`.
+void deepen(Depths& depths, const Surface& surface, std::uint32_t i, std::uint32_t depth) {
+    const std::uint32_t side = 1u << surface.scale(i);
+    for (std::uint32_t y = 0; y < side; ++y)
+        for (std::uint32_t x = 0; x < side; ++x) {
+            auto& there = depths[surface.cell_of_patch[i] + y * surface.columns + x];
+            there = std::max(there, static_cast<std::uint8_t>(depth));
+        }
+}
+
+Depths element_depths(const Surface& surface, std::uint32_t levels,
+                      const std::vector<bool>& split) {
     Depths depths(std::size_t{surface.columns} * surface.rows, 0);
     for (std::uint32_t i = 0; i < surface.patch_count; ++i) {
-        const std::uint32_t scale = surface.scale(i), side = 1u << scale;
+        const std::uint32_t scale = surface.scale(i);
         const std::uint32_t more = scale > 0 && split[surface.first_patch + i] ? 1 : 0;
-        const auto depth = static_cast<std::uint8_t>(levels - scale + more);
-        for (std::uint32_t y = 0; y < side; ++y)
-            for (std::uint32_t x = 0; x < side; ++x) {
-                auto& there = depths[surface.cell_of_patch[i] + y * surface.columns + x];
-                there = std::max(there, depth);
-            }
+        deepen(depths, surface, i, levels - scale + more);
     }
+    return depths;
+}
+
+void deepen_shooters(std::vector<SplitDepths>& depths, const Mesh& mesh,
+                     const std::vector<bool>& split) {
+    for (std::size_t i = 0; i < mesh.shooters.size(); ++i) {
+        const Shooter& shooter = mesh.shooters[i];
+        const Surface& surface = mesh.surfaces[shooter.surface];
+        if (surface.scale_of_patch.empty()) continue;
+        const std::uint32_t first = shooter.first_patch - surface.first_patch;
+        const std::uint32_t more = !split.empty() && split[i] ? 1 : 0;
+        for (std::uint32_t k = first; k < first + shooter.patch_count; ++k)
+            deepen(depths[shooter.surface].shooters, surface, k, shooter.splits + more);
+    }
+}
+
+std::vector<SplitDepths> depths_of(const Mesh& mesh, std::uint32_t levels, const Splits& splits) {
+    std::vector<SplitDepths> depths;
+    for (const Surface& surface : mesh.surfaces) {
+        depths.emplace_back();
+        if (surface.scale_of_patch.empty()) continue;
+        depths.back().elements = element_depths(surface, levels, splits.elements);
+        depths.back().shooters.resize(depths.back().elements.size(), 0);
+    }
+    deepen_shooters(depths, mesh, splits.shooters);
     return depths;
 }
 
@@ -349,14 +404,10 @@ Mesh build_mesh(const Scene& scene, const MeshSettings& settings) {
     return meshing::Mesher(scene, settings).run();
 }
 
-Mesh split_elements(const Scene& scene, const MeshSettings& settings, const Mesh& mesh,
-                    const std::vector<bool>& split) {
-    std::vector<meshing::Depths> depths;
-    for (const Surface& surface : mesh.surfaces)
-        depths.push_back(surface.scale_of_patch.empty()
-                             ? meshing::Depths{}
-                             : meshing::depths_of(surface, settings.split_levels, split));
-    return meshing::Mesher(scene, settings, std::move(depths)).run();
+Mesh split_mesh(const Scene& scene, const MeshSettings& settings, const Mesh& mesh,
+                const Splits& splits) {
+    return meshing::Mesher(scene, settings, meshing::depths_of(mesh, settings.split_levels, splits))
+        .run();
 }
 
 // 3,000 cells' worth of area: with its borders a Cornell box gets some 3,300 patches.

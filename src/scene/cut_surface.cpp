@@ -1,6 +1,7 @@
 #include "scene/cut_surface.h"
 
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -90,25 +91,58 @@ class SurfaceCutter {
         elements_.clear();
         for (const Polygon& part :
              cut_along_contacts(merged.polygon, contacts_here_, slack_, precision_, splitter_))
-            for (const Polygon& shooter : cut_into_quads(part, precision_.plane))
-                add_shooter({cell.front().cell, 0, shooter});
+            add_shooters(0, {cell.front().cell, 0, part});
         if (elements_.empty()) return;
         for (const std::uint32_t piece : merged.pieces)
             share_out(cell[piece], elements_, first_patch, cut_.fragments);
     }
 
-    void add_shooter(const CellPiece& shooter) {
+    void add_shooters(std::uint32_t splits, const CellPiece& piece) {
+        if (!splits_shooters(splits, piece.cell)) {
+            for (const Polygon& quad : cut_into_quads(piece.polygon, precision_.plane))
+                add_shooter(splits, {piece.cell, 0, quad});
+            return;
+        }
+        for (CellPiece& part : cut_into_cells(
+                 piece.polygon, piece.face, grids_.split_shooters[splits], precision_, vertices_)) {
+            part.polygon = without_straight_corners(part.polygon, precision_.plane);
+            if (part.polygon.size() > 2) add_shooters(splits + 1, part);
+        }
+    }
+
+    const Surface& shooter_grid(std::uint32_t splits) const {
+        return splits == 0 ? grids_.patches : grids_.split_shooters[splits - 1];
+    }
+
+    // The elements that fill the cells of a shooters' grid; none where it is coarser than all.
+    std::optional<std::size_t> elements_like(const Surface& grid) const {
+        for (std::size_t level = 0; level < grids_.elements.size(); ++level)
+            if (grids_.elements[level].columns == grid.columns &&
+                grids_.elements[level].rows == grid.rows)
+                return level;
+        return {};
+    }
+
+    bool splits_shooters(std::uint32_t splits, std::uint32_t cell) const {
+        if (splits == grids_.split_shooters.size()) return false;
+        const Surface& grid = shooter_grid(splits);
+        const auto level = elements_like(grid);
+        return is_deeper(grids_.shooter_depths, splits, block(grid, cell)) &&
+               (!level || is_split(*level, cell));
+    }
+
+    void add_shooter(std::uint32_t splits, const CellPiece& shooter) {
         const auto first_patch = static_cast<std::uint32_t>(cut_.patches.size());
-        const Surface& coarsest = grids_.elements.front();
-        if (coarsest.columns != grids_.patches.columns || coarsest.rows != grids_.patches.rows)
+        const auto level = elements_like(shooter_grid(splits));
+        if (!level)
             cut_along(0, shooter);
         else if (grids_.elements.size() > 1)
-            add_piece(0, shooter);
+            add_piece(*level, shooter);
         else
             add_element(0, shooter.cell, shooter.polygon);
         const auto count = static_cast<std::uint32_t>(cut_.patches.size()) - first_patch;
         if (count == 0) return;
-        cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count});
+        cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count, splits});
         marks_.add(shooter.polygon, contacts_here_, slack_);
     }
 
@@ -130,16 +164,11 @@ class SurfaceCutter {
     }
 
     bool is_split(std::size_t level, std::uint32_t cell) const {
-        if (grids_.depths.empty()) return false;
-        const auto [column, row, side] = block(level, cell);
-        for (std::uint32_t y = row; y < row + side; ++y)
-            for (std::uint32_t x = column; x < column + side; ++x)
-                if (grids_.depths[std::size_t{y} * cut_.surface.columns + x] > level) return true;
-        return false;
+        return is_deeper(grids_.depths, level, block(grids_.elements[level], cell));
     }
 
     void add_element(std::size_t level, std::uint32_t cell, const Polygon& polygon) {
-        const auto [column, row, side] = block(level, cell);
+        const auto [column, row, width, height] = block(grids_.elements[level], cell);
         cut_.patches.push_back({corners_of(polygon), 0});
         cut_.surface.cell_of_patch.push_back(row * cut_.surface.columns + column);
         if (grids_.elements.size() > 1)
@@ -150,13 +179,21 @@ class SurfaceCutter {
 
     /// Cells of the finest grid.
     struct Block {
-        std::uint32_t column, row, side;
+        std::uint32_t column, row, width, height;
     };
 
-    Block block(std::size_t level, std::uint32_t cell) const {
-        const std::uint32_t columns = grids_.elements[level].columns;
-        const std::uint32_t side = 1u << (grids_.elements.size() - 1 - level);
-        return {cell % columns * side, cell / columns * side, side};
+    Block block(const Surface& grid, std::uint32_t cell) const {
+        const std::uint32_t width = cut_.surface.columns / grid.columns;
+        const std::uint32_t height = cut_.surface.rows / grid.rows;
+        return {cell % grid.columns * width, cell / grid.columns * height, width, height};
+    }
+
+    bool is_deeper(const Depths& depths, std::size_t than, const Block& block) const {
+        if (depths.empty()) return false;
+        for (std::uint32_t y = block.row; y < block.row + block.height; ++y)
+            for (std::uint32_t x = block.column; x < block.column + block.width; ++x)
+                if (depths[std::size_t{y} * cut_.surface.columns + x] > than) return true;
+        return false;
     }
 
     Grids grids_;
@@ -202,9 +239,9 @@ void append(CutSurface cut, Mesh& mesh) {
     cut.surface.patch_count = static_cast<std::uint32_t>(cut.patches.size());
     const auto index = static_cast<std::uint32_t>(mesh.surfaces.size());
     for (const Patch& patch : cut.patches) mesh.patches.push_back({patch.corners, index});
-    for (const auto& [corners, surface, first_patch, patch_count] : cut.shooters)
+    for (const auto& [corners, surface, first_patch, patch_count, splits] : cut.shooters)
         mesh.shooters.push_back(
-            {corners, index, cut.surface.first_patch + first_patch, patch_count});
+            {corners, index, cut.surface.first_patch + first_patch, patch_count, splits});
     for (const auto& [face, patch, area] : cut.fragments)
         mesh.fragments.push_back({face, cut.surface.first_patch + patch, area});
     mesh.surfaces.push_back(std::move(cut.surface));

@@ -19,7 +19,7 @@ struct CutSurface {
     std::vector<Fragment> fragments;
 };
 
-/// How often each cell of a surface's finest grid has been split; empty: never.
+/// How often what lies in each cell of a surface's finest grid has been split; empty: never.
 using Depths = std::vector<std::uint8_t>;
 
 /// A surface's grids, coarse to fine: that of its patches, each cell of which is a whole number of
@@ -29,14 +29,18 @@ struct Grids {
     std::vector<Surface> elements;
     Depths depths = {};
     std::vector<Contact> contacts = {};  ///< along which the surface is cut, too
+    /// Of shooters that were split once, twice, ...: each a whole number of times as fine as the
+    /// one before, and from the grid that equals elements[0] on as fine as the elements.
+    std::vector<Surface> split_shooters = {};
+    Depths shooter_depths = {};
 };
 
 enum class Merging { in_cells, none };
 
 /// Fills the coarse grid with shooters: quads where the surface's faces fill a cell, triangles and
-/// quads where its outline or a contact runs through one. Then each shooter along the grid of
-/// elements, likewise, and further where depths say so. The surface that comes back has the finest
-/// grid.
+/// quads where its outline or a contact runs through one. These are split where shooter_depths say
+/// so, as far as elements are. Then each shooter along the grid of elements, likewise, and further
+/// where depths say so. The surface that comes back has the finest grid.
 CutSurface cut_surface(const FlatFaces& faces, const Group& group, Grids grids, Merging merging,
                        const Precision& precision, VertexWelder& vertices);
 

@@ -106,6 +106,12 @@ void check(const CellCount& cells, const Scene& scene, std::uint32_t object) {
                      "\" would have more than 100 million " + cells.patches);
 }
 
+std::uint32_t least_factor(std::uint32_t number) {
+    for (std::uint32_t factor = 2; factor * factor <= number; ++factor)
+        if (number % factor == 0) return factor;
+    return number;
+}
+
 Surface in_parts(const Scene& scene, Surface surface, const glm::dvec2& parts) {
     const double columns = parts.x * surface.columns, rows = parts.y * surface.rows;
     surface.cell_size /= parts;
@@ -152,6 +158,16 @@ Surface divide_cells(const Scene& scene, const Surface& surface, const Precision
 
 Surface halve_cells(const Scene& scene, const Surface& surface, std::uint32_t levels) {
     return in_parts(scene, surface, glm::dvec2(std::ldexp(1.0, static_cast<int>(levels))));
+}
+
+Surface part_cells(const Surface& surface, const Surface& elements) {
+    const std::uint32_t across = least_factor(elements.columns / surface.columns);
+    const std::uint32_t up = least_factor(elements.rows / surface.rows);
+    Surface parts = surface;
+    parts.columns *= across;
+    parts.rows *= up;
+    parts.cell_size /= glm::dvec2(across, up);
+    return parts;
 }
 
 }  // namespace hemirad::meshing

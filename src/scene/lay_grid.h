@@ -21,4 +21,8 @@ Surface divide_cells(const Scene& scene, const Surface& surface, const Precision
 /// The same surface with 2^levels cells a side in place of each.
 Surface halve_cells(const Scene& scene, const Surface& surface, std::uint32_t levels);
 
+/// The same surface with cells of which each is divided, along each side, by the least factor of
+/// the number of cells of `elements` there; not where that is one.
+Surface part_cells(const Surface& surface, const Surface& elements);
+
 }  // namespace hemirad::meshing

@@ -27,6 +27,7 @@ struct Shooter {
     std::array<std::uint32_t, 4> corners;  ///< as Patch::corners
     std::uint32_t surface;
     std::uint32_t first_patch, patch_count;
+    std::uint32_t splits = 0;  ///< how often split_mesh() has split what it is a part of
 };
 
 inline constexpr std::uint32_t kOwnPlane = 0xffffffffu;
@@ -126,7 +127,7 @@ struct MeshSettings {
     /// m; patches are cut into elements no longer than this, which then are Mesh::patches, and
     /// shoot as one (Mesh::shooters). 0: a patch is its own only element.
     double element_size = 0;
-    std::uint32_t split_levels = 0;  ///< how often split_elements() may split an element
+    std::uint32_t split_levels = 0;  ///< how often split_mesh() may split an element or a shooter
     Backfaces backfaces = Backfaces::automatic;
     double max_reflectance = 0.98;
     double weld = 0;  ///< m; vertices closer than this are one; 0: as precise as the scene is
@@ -139,11 +140,18 @@ struct MeshSettings {
 /// Throws InputError where nothing is left.
 Mesh build_mesh(const Scene& scene, const MeshSettings& settings);
 
-/// The mesh that build_mesh made of the scene, or this function of that, with elements split in
-/// four: those of `split`, by patch, that were split less than `settings.split_levels` times.
-/// Surfaces, their grids and the shooters stay.
-Mesh split_elements(const Scene& scene, const MeshSettings& settings, const Mesh& mesh,
-                    const std::vector<bool>& split);
+/// What is to be split.
+struct Splits {
+    std::vector<bool> elements;       ///< by patch
+    std::vector<bool> shooters = {};  ///< by shooter; empty: none
+};
+
+/// The mesh that build_mesh made of the scene, or this function of that, with elements and shooters
+/// split in four: those that were split less than `settings.split_levels` times. A shooter's parts
+/// are whole elements: along a side that holds an odd number of these it becomes as many parts as
+/// the number's least factor, none where it holds one. Surfaces and their grids stay.
+Mesh split_mesh(const Scene& scene, const MeshSettings& settings, const Mesh& mesh,
+                const Splits& splits);
 
 /// The patch size that `--patch-size` defaults to, m.
 double default_patch_size(const Scene& scene);

@@ -210,9 +210,13 @@ TEST(Elements, AreNotForBlackBacks) {
 Mesh split_at_random(const Scene& scene, const MeshSettings& settings, std::mt19937& random) {
     Mesh mesh = build_mesh(scene, settings);
     for (std::uint32_t level = 0; level < settings.split_levels; ++level) {
-        std::vector<bool> split(mesh.patches.size());
-        for (std::size_t i = 0; i < split.size(); ++i) split[i] = random() % 3 == 0;
-        mesh = split_elements(scene, settings, mesh, split);
+        Splits splits{std::vector<bool>(mesh.patches.size()),
+                      std::vector<bool>(mesh.shooters.size())};
+        for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+            splits.elements[i] = random() % 3 == 0;
+        for (std::size_t i = 0; i < mesh.shooters.size(); ++i)
+            splits.shooters[i] = random() % 3 == 0;
+        mesh = split_mesh(scene, settings, mesh, splits);
     }
     return mesh;
 }
@@ -225,7 +229,7 @@ TEST(SplitElements, BecomeFour) {
     EXPECT_EQ(mesh.surfaces[0].columns, 12u);
     EXPECT_TRUE(mesh.shooters.empty());
 
-    mesh = split_elements(scene, settings, mesh, {false, false, false, false, true, false});
+    mesh = split_mesh(scene, settings, mesh, {{false, false, false, false, true, false}});
 
     ASSERT_EQ(mesh.patches.size(), 9u);
     ASSERT_EQ(mesh.shooters.size(), 6u);
@@ -246,7 +250,7 @@ TEST(SplitElements, AreSplitAsOftenAsAllowed) {
     const MeshSettings settings{.patch_size = 1, .split_levels = 2, .backfaces = Backfaces::cull};
     Mesh mesh = build_mesh(scene, settings);
     for (const std::size_t count : {4u, 16u, 16u}) {
-        mesh = split_elements(scene, settings, mesh, std::vector<bool>(mesh.patches.size(), true));
+        mesh = split_mesh(scene, settings, mesh, {std::vector<bool>(mesh.patches.size(), true)});
         EXPECT_EQ(mesh.patches.size(), count);
     }
 }
@@ -261,7 +265,9 @@ TEST(SplitElements, NestInPatchesOfAnyShape) {
                                     .backfaces = Backfaces::block};
         const Mesh mesh = split_at_random(scene, settings, random);
 
-        EXPECT_GT(mesh.patches.size(), 2 * build_mesh(scene, settings).patches.size());
+        const Mesh whole = build_mesh(scene, settings);
+        EXPECT_GT(mesh.patches.size(), 2 * whole.patches.size());
+        EXPECT_GT(mesh.shooters.size(), 2 * whole.shooters.size());
         expect_nested(mesh);
         expect_in_cells(mesh);
         expect_whole_faces(scene, mesh);
@@ -275,7 +281,7 @@ TEST(SplitElements, OfBacksAreTheirOwn) {
     const Mesh whole = build_mesh(scene, settings);
     ASSERT_EQ(whole.patches.size(), 4u);
 
-    const Mesh mesh = split_elements(scene, settings, whole, {true, false, true, false});
+    const Mesh mesh = split_mesh(scene, settings, whole, {{true, false, true, false}});
 
     ASSERT_EQ(mesh.patches.size(), 10u);
     expect_nested(mesh);
@@ -354,6 +360,102 @@ TEST(SplitElements, EndWhereABlockStandsAndKeepTheirSides) {
         expect_in_cells(mesh);
         expect_whole_faces(scene, mesh);
     }
+}
+
+Splits all_shooters(const Mesh& mesh) {
+    return {std::vector<bool>(mesh.patches.size(), false),
+            std::vector<bool>(mesh.shooters.size(), true)};
+}
+
+TEST(SplitShooters, BecomeFourOfTheSameElements) {
+    const Scene scene = scene_of({rectangle(0, 0, 3, 1)});
+    const MeshSettings settings{
+        .patch_size = 1, .element_size = 0.25, .split_levels = 2, .backfaces = Backfaces::cull};
+    const Mesh whole = build_mesh(scene, settings);
+    ASSERT_EQ(whole.shooters.size(), 3u);
+    Splits splits = all_shooters(whole);
+    splits.shooters = {false, true, false};
+
+    const Mesh mesh = split_mesh(scene, settings, whole, splits);
+
+    ASSERT_EQ(mesh.shooters.size(), 6u);
+    EXPECT_EQ(mesh.patches.size(), whole.patches.size());
+    for (std::size_t i = 0; i < 6; ++i) {
+        const bool part = i > 0 && i < 5;
+        EXPECT_EQ(mesh.shooters[i].splits, part ? 1u : 0u);
+        EXPECT_EQ(mesh.shooters[i].patch_count, part ? 4u : 16u);
+        EXPECT_NEAR(mesh.area({mesh.shooters[i].corners, 0}), part ? 0.25 : 1, 1e-15);
+    }
+    expect_nested(mesh);
+    expect_in_cells(mesh);
+}
+
+TEST(SplitShooters, AreSplitAsOftenAsAllowedAndNotBelowElements) {
+    const Scene scene = scene_of({rectangle(0, 0, 1, 1)});
+    const auto counts = [&](double element_size, std::uint32_t levels) {
+        const MeshSettings settings{.patch_size = 1,
+                                    .element_size = element_size,
+                                    .split_levels = levels,
+                                    .backfaces = Backfaces::cull};
+        Mesh mesh = build_mesh(scene, settings);
+        std::vector<std::size_t> shooters;
+        for (int round = 0; round < 3; ++round) {
+            mesh = split_mesh(scene, settings, mesh, all_shooters(mesh));
+            shooters.push_back(mesh.shooters.size());
+        }
+        return shooters;
+    };
+
+    EXPECT_EQ(counts(0.125, 2), (std::vector<std::size_t>{4, 16, 16}));
+    EXPECT_EQ(counts(0.5, 3), (std::vector<std::size_t>{4, 4, 4}));
+}
+
+TEST(SplitShooters, GoOnWhereElementsWereSplit) {
+    const Scene scene = scene_of({rectangle(0, 0, 2, 1)});
+    const MeshSettings settings{.patch_size = 1, .split_levels = 2, .backfaces = Backfaces::cull};
+    Mesh mesh = split_mesh(scene, settings, build_mesh(scene, settings), {{true, false}});
+    ASSERT_EQ(mesh.shooters.size(), 2u);
+
+    mesh = split_mesh(scene, settings, mesh, all_shooters(mesh));
+
+    ASSERT_EQ(mesh.shooters.size(), 5u);
+    for (const Shooter& shooter : mesh.shooters) EXPECT_EQ(shooter.patch_count, 1u);
+    EXPECT_EQ(mesh.shooters[3].splits, 1u);
+    EXPECT_EQ(mesh.shooters[4].splits, 0u);
+    expect_nested(mesh);
+}
+
+TEST(SplitShooters, OfAnOddNumberOfElementsBecomeAsManyParts) {
+    const Scene scene = scene_of({rectangle(0, 0, 3, 2)});
+    const MeshSettings settings{
+        .patch_size = 3, .element_size = 1, .split_levels = 2, .backfaces = Backfaces::cull};
+    const Mesh whole = build_mesh(scene, settings);
+    ASSERT_EQ(whole.shooters.size(), 1u);
+
+    const Mesh mesh = split_mesh(scene, settings, whole, all_shooters(whole));
+
+    EXPECT_EQ(mesh.shooters.size(), 6u);
+    expect_nested(mesh);
+}
+
+TEST(SplitShooters, OfBacksAreTheirOwn) {
+    Scene scene = scene_of({rectangle(0, 0, 2, 1)});
+    scene.materials[0].double_sided = true;
+    const MeshSettings settings{.patch_size = 1, .element_size = 0.5, .split_levels = 1};
+    const Mesh whole = build_mesh(scene, settings);
+    ASSERT_EQ(whole.shooters.size(), 4u);
+    Splits splits = all_shooters(whole);
+    splits.shooters = {false, false, true, false};
+
+    const Mesh mesh = split_mesh(scene, settings, whole, splits);
+
+    ASSERT_EQ(mesh.shooters.size(), 7u);
+    const Shooter& kept = whole.shooters[3];
+    for (int k = 0; k < 4; ++k)
+        EXPECT_EQ(mesh.vertices[mesh.shooters[6].corners[k]], whole.vertices[kept.corners[k]]);
+    for (std::size_t i = 2; i < 6; ++i) EXPECT_EQ(mesh.shooters[i].surface, 1u);
+    expect_nested(mesh);
+    expect_in_cells(mesh);
 }
 
 TEST(Elements, TooSmallAreRefused) {

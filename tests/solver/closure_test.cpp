@@ -71,7 +71,7 @@ TEST(Closure, NothingEscapesBetweenSplitElementsOfARotatedRoom) {
     for (std::uint32_t level = 0; level < settings.split_levels; ++level) {
         std::vector<bool> split(mesh.patches.size());
         for (std::size_t i = 0; i < split.size(); ++i) split[i] = random() % 3 == 0;
-        mesh = split_elements(scene, settings, mesh, split);
+        mesh = split_mesh(scene, settings, mesh, {split});
     }
     mesh.shooters.clear();  // each looks for itself
     expect_nothing_escapes(mesh, 256, 7);

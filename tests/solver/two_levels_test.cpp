@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
 #include "solver/support.h"
 
@@ -29,6 +30,20 @@ TEST(TwoLevels, EveryElementOfAFurnaceIsEquallyBright) {
     for (const double value : solution.radiosity[0])
         EXPECT_NEAR(value * (1 - rho) / std::numbers::pi, 1, 2e-5);
     EXPECT_LT(solution.ledger[0].residual(), 1e-6);
+}
+
+/// Shooters of all sizes, chosen at random.
+Mesh with_split_shooters(const Scene& scene, const MeshSettings& settings) {
+    std::mt19937 random(5);
+    Mesh mesh = build_mesh(scene, settings);
+    for (std::uint32_t level = 0; level < settings.split_levels; ++level) {
+        Splits splits{std::vector<bool>(mesh.patches.size(), false),
+                      std::vector<bool>(mesh.shooters.size())};
+        for (std::size_t i = 0; i < mesh.shooters.size(); ++i)
+            splits.shooters[i] = random() % 3 == 0;
+        mesh = split_mesh(scene, settings, mesh, splits);
+    }
+    return mesh;
 }
 
 // Rows of the device, in the reference's full matrix.
@@ -61,9 +76,7 @@ Rows rows_of(const Mesh& mesh, std::uint32_t resolution) {
     return rows;
 }
 
-TEST(TwoLevels, GiveTheSolutionOfTheFullMatrix) {
-    const Mesh mesh = two_levels(furnished_room(), 1.0, 0.5);
-    ASSERT_LT(2 * mesh.shooters.size(), mesh.patches.size());
+void expect_solution_of_the_full_matrix(const Mesh& mesh) {
     const Rows rows = rows_of(mesh, 64);
     std::vector<double> areas(mesh.shooters.size());
     for (std::size_t i = 0; i < areas.size(); ++i)
@@ -89,8 +102,23 @@ TEST(TwoLevels, GiveTheSolutionOfTheFullMatrix) {
     }
 }
 
-TEST(TwoLevels, HaveTheSameBitsForEveryArray) {
-    const Mesh mesh = two_levels(scene_named("cornell.gltf"), 0.2, 0.07);
+TEST(TwoLevels, GiveTheSolutionOfTheFullMatrix) {
+    const Mesh mesh = two_levels(furnished_room(), 1.0, 0.5);
+    ASSERT_LT(2 * mesh.shooters.size(), mesh.patches.size());
+
+    expect_solution_of_the_full_matrix(mesh);
+}
+
+TEST(TwoLevels, GiveTheSolutionOfTheFullMatrixWithSplitShooters) {
+    const MeshSettings settings{.patch_size = 2.0, .element_size = 0.5, .split_levels = 2};
+    const Mesh mesh = with_split_shooters(furnished_room(), settings);
+    ASSERT_LT(build_mesh(furnished_room(), settings).shooters.size(), mesh.shooters.size());
+    ASSERT_LT(mesh.shooters.size(), mesh.patches.size());
+
+    expect_solution_of_the_full_matrix(mesh);
+}
+
+void expect_same_bits_for_every_array(const Mesh& mesh) {
     auto how = settings(64, 1e-2);
     how.form_factor = FormFactorMode::analytic;
     const auto first = solution_of(mesh, how);
@@ -102,6 +130,34 @@ TEST(TwoLevels, HaveTheSameBitsForEveryArray) {
         EXPECT_EQ(other.shots, first.shots) << shape;
         EXPECT_EQ(other.irradiance, first.irradiance) << shape;
         EXPECT_EQ(other.ledger[0].unshot, first.ledger[0].unshot) << shape;
+    }
+}
+
+TEST(TwoLevels, HaveTheSameBitsForEveryArray) {
+    expect_same_bits_for_every_array(two_levels(scene_named("cornell.gltf"), 0.2, 0.07));
+}
+
+TEST(TwoLevels, HaveTheSameBitsForEveryArrayWithSplitShooters) {
+    expect_same_bits_for_every_array(with_split_shooters(
+        scene_named("cornell.gltf"), {.patch_size = 0.2, .element_size = 0.05, .split_levels = 2}));
+}
+
+TEST(TwoLevels, StayClosedWithSplitShooters) {
+    const MeshSettings settings{.patch_size = 1.4, .element_size = 0.35, .split_levels = 2};
+    const Mesh mesh = with_split_shooters(scene_named("lroom.obj"), settings);
+    EXPECT_TRUE(mesh.closed);
+    auto how = hemirad::test::settings(128, 1e-3);
+    how.form_factor = FormFactorMode::analytic;
+    const auto device = mp1map::Device::open("");
+    ProgressiveSolver solver(mesh, how, device);
+
+    solver.solve(go_on);
+
+    EXPECT_EQ(solver.closure().least, 1.0);
+    EXPECT_EQ(solver.closure().most, 1.0);
+    for (const Ledger& ledger : solver.solution().ledger) {
+        EXPECT_EQ(ledger.escaped, 0);
+        EXPECT_LT(ledger.residual(), 1e-6);
     }
 }
 
