@@ -81,7 +81,7 @@ class SurfaceCutter {
 
     CutSurface take() {
         if (!marks_.empty())
-            cut_.surface.side_of_patch = find_sides(cut_.shooters, cut_.surface, marks_);
+            cut_.surface.side_of_patch = find_sides(pieces_, cut_.surface, marks_);
         return std::move(cut_);
     }
 
@@ -91,10 +91,21 @@ class SurfaceCutter {
         elements_.clear();
         for (const Polygon& part :
              cut_along_contacts(merged.polygon, contacts_here_, slack_, precision_, splitter_))
-            add_shooters(0, {cell.front().cell, 0, part});
+            add_part({cell.front().cell, 0, part});
         if (elements_.empty()) return;
         for (const std::uint32_t piece : merged.pieces)
             share_out(cell[piece], elements_, first_patch, cut_.fragments);
+    }
+
+    void add_part(const CellPiece& part) {
+        const auto first_patch = static_cast<std::uint32_t>(cut_.patches.size());
+        add_shooters(0, part);
+        if (contacts_.empty()) return;
+        SidePiece piece{
+            {}, first_patch, static_cast<std::uint32_t>(cut_.patches.size()) - first_patch};
+        for (const Corner& corner : part.polygon) piece.corners.push_back(corner.vertex);
+        pieces_.push_back(std::move(piece));
+        marks_.add(part.polygon, contacts_here_, slack_);
     }
 
     void add_shooters(std::uint32_t splits, const CellPiece& piece) {
@@ -141,9 +152,8 @@ class SurfaceCutter {
         else
             add_element(0, shooter.cell, shooter.polygon);
         const auto count = static_cast<std::uint32_t>(cut_.patches.size()) - first_patch;
-        if (count == 0) return;
-        cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count, splits});
-        marks_.add(shooter.polygon, contacts_here_, slack_);
+        if (count > 0)
+            cut_.shooters.push_back({corners_of(shooter.polygon), 0, first_patch, count, splits});
     }
 
     void cut_along(std::size_t level, const CellPiece& piece) {
@@ -203,6 +213,7 @@ class SurfaceCutter {
     double slack_;
     ContactGrid contacts_;
     std::vector<Contact> contacts_here_;  ///< of the cell that is being filled
+    std::vector<SidePiece> pieces_;       ///< of a surface that has contacts
     ContactMarks marks_;
     CutSurface cut_;
     std::vector<Polygon> elements_;  ///< of the patches that are being added

@@ -13,32 +13,27 @@ namespace {
 /// largest in all.
 constexpr std::int64_t kReach = 2;
 
-std::size_t corner_count(const Shooter& shooter) {
-    return shooter.corners[3] == shooter.corners[2] ? 3 : 4;
-}
-
-void join_over_vertices(const std::vector<Shooter>& shooters, const ContactMarks& marks,
+void join_over_vertices(const std::vector<SidePiece>& pieces, const ContactMarks& marks,
                         DisjointSets& regions) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex;
-    for (std::uint32_t s = 0; s < shooters.size(); ++s)
-        for (std::size_t i = 0; i < corner_count(shooters[s]); ++i)
-            if (!marks.is_on_contact(shooters[s].corners[i]))
-                at_vertex.emplace_back(shooters[s].corners[i], s);
+    for (std::uint32_t p = 0; p < pieces.size(); ++p)
+        for (const std::uint32_t corner : pieces[p].corners)
+            if (!marks.is_on_contact(corner)) at_vertex.emplace_back(corner, p);
     std::ranges::sort(at_vertex);
     for (std::size_t i = 1; i < at_vertex.size(); ++i)
         if (at_vertex[i].first == at_vertex[i - 1].first)
             regions.join(at_vertex[i].second, at_vertex[i - 1].second);
 }
 
-void join_over_edges(const std::vector<Shooter>& shooters, const ContactMarks& marks,
+void join_over_edges(const std::vector<SidePiece>& pieces, const ContactMarks& marks,
                      DisjointSets& regions) {
     std::vector<Edge> edges;
-    for (std::uint32_t s = 0; s < shooters.size(); ++s) {
-        const std::size_t n = corner_count(shooters[s]);
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::uint32_t a = shooters[s].corners[i], b = shooters[s].corners[(i + 1) % n];
+    for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+        const auto& corners = pieces[p].corners;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const std::uint32_t a = corners[i], b = corners[(i + 1) % corners.size()];
             if (marks.is_on_contact(a) && marks.is_on_contact(b) && !marks.runs_along_contact(a, b))
-                edges.emplace_back(a, b, s);
+                edges.emplace_back(a, b, p);
         }
     }
     sort_edges(edges);
@@ -54,16 +49,16 @@ struct Presence {
     auto operator<=>(const Presence&) const = default;
 };
 
-std::vector<Presence> presences(const std::vector<Shooter>& shooters, const Surface& surface,
+std::vector<Presence> presences(const std::vector<SidePiece>& pieces, const Surface& surface,
                                 DisjointSets& regions) {
     const std::uint32_t scale =
         surface.scale_of_patch.empty() ? 0 : std::ranges::max(surface.scale_of_patch);
     std::vector<Presence> present;
-    for (std::uint32_t s = 0; s < shooters.size(); ++s)
-        for (std::uint32_t i = 0; i < shooters[s].patch_count; ++i) {
-            const std::uint32_t cell = surface.cell_of_patch[shooters[s].first_patch + i];
+    for (std::uint32_t p = 0; p < pieces.size(); ++p)
+        for (std::uint32_t i = 0; i < pieces[p].patch_count; ++i) {
+            const std::uint32_t cell = surface.cell_of_patch[pieces[p].first_patch + i];
             present.push_back({(cell / surface.columns) >> scale, (cell % surface.columns) >> scale,
-                               regions.find(s)});
+                               regions.find(p)});
         }
     std::ranges::sort(present);
     const auto repeated = std::ranges::unique(present);
@@ -120,9 +115,9 @@ std::uint8_t free_side(std::uint32_t region, const Pairs& pairs,
 
 }  // namespace
 
-void ContactMarks::add(const Polygon& shooter, const std::vector<Contact>& contacts, double slack) {
-    for (std::size_t i = 0; i < shooter.size(); ++i) {
-        const Corner &a = shooter[i], &b = shooter[(i + 1) % shooter.size()];
+void ContactMarks::add(const Polygon& piece, const std::vector<Contact>& contacts, double slack) {
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+        const Corner &a = piece[i], &b = piece[(i + 1) % piece.size()];
         for (const Contact& contact : contacts) {
             if (distance(contact, a.at) <= slack) vertices_.insert(a.vertex);
             if (runs_along(contact, a.at, b.at, slack))
@@ -135,17 +130,17 @@ bool ContactMarks::runs_along_contact(std::uint32_t a, std::uint32_t b) const {
     return edges_.contains(std::minmax(a, b));
 }
 
-std::vector<std::uint8_t> find_sides(const std::vector<Shooter>& shooters, const Surface& surface,
+std::vector<std::uint8_t> find_sides(const std::vector<SidePiece>& pieces, const Surface& surface,
                                      const ContactMarks& marks) {
-    DisjointSets regions(shooters.size());
-    join_over_vertices(shooters, marks, regions);
-    join_over_edges(shooters, marks, regions);
-    const Pairs pairs = near_each_other(presences(shooters, surface, regions));
-    std::vector<std::uint8_t> of_shooter(shooters.size(), 0), of_patch;
-    for (std::uint32_t s = 0; s < shooters.size(); ++s) {
-        const std::uint32_t region = regions.find(s);  // its lowest shooter
-        of_shooter[s] = region == s ? free_side(region, pairs, of_shooter) : of_shooter[region];
-        of_patch.insert(of_patch.end(), shooters[s].patch_count, of_shooter[s]);
+    DisjointSets regions(pieces.size());
+    join_over_vertices(pieces, marks, regions);
+    join_over_edges(pieces, marks, regions);
+    const Pairs pairs = near_each_other(presences(pieces, surface, regions));
+    std::vector<std::uint8_t> of_piece(pieces.size(), 0), of_patch;
+    for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+        const std::uint32_t region = regions.find(p);  // its lowest piece
+        of_piece[p] = region == p ? free_side(region, pairs, of_piece) : of_piece[region];
+        of_patch.insert(of_patch.end(), pieces[p].patch_count, of_piece[p]);
     }
     if (std::ranges::all_of(of_patch, [](std::uint8_t side) { return side == 0; }))
         of_patch.clear();

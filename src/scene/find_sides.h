@@ -11,10 +11,16 @@
 
 namespace hemirad::meshing {
 
-/// Where the shooters of a surface meet its contacts.
+/// A part of a cell on one side of every contact, and the patches that were made of it.
+struct SidePiece {
+    std::vector<std::uint32_t> corners;
+    std::uint32_t first_patch, patch_count;
+};
+
+/// Where the pieces of a surface meet its contacts.
 class ContactMarks {
   public:
-    void add(const Polygon& shooter, const std::vector<Contact>& contacts, double slack);
+    void add(const Polygon& piece, const std::vector<Contact>& contacts, double slack);
 
     bool empty() const { return vertices_.empty(); }
     bool is_on_contact(std::uint32_t vertex) const { return vertices_.contains(vertex); }
@@ -25,10 +31,10 @@ class ContactMarks {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;
 };
 
-/// Surface::side_of_patch, for shooters none of which lies on both sides of a contact. They hang
-/// together over vertices off all contacts and over edges that run along none; what does not hang
-/// together and is near has different sides.
-std::vector<std::uint8_t> find_sides(const std::vector<Shooter>& shooters, const Surface& surface,
+/// Surface::side_of_patch, for the pieces of all patches, in order. They hang together over
+/// vertices off all contacts and over edges that run along none; what does not hang together and is
+/// near has different sides.
+std::vector<std::uint8_t> find_sides(const std::vector<SidePiece>& pieces, const Surface& surface,
                                      const ContactMarks& marks);
 
 }  // namespace hemirad::meshing
