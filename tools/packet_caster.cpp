@@ -130,12 +130,12 @@ RTCScene scene_of(RTCDevice device, const PatchArrays& patches) {
 
 }  // namespace
 
-// The threads wait between hemispheres and take its tiles as they come.
+// The threads take the tiles of all hemispheres as they come, and wait for the next ones.
 struct PacketCaster::Parts {
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene;
     std::vector<std::int32_t> counts;
-    Hemisphere hemisphere;
+    std::vector<Hemisphere> hemispheres;  // of one resolution
     std::atomic<int> next_tile = 0;
     bool stopped = false;
     std::ptrdiff_t thread_count = std::max(1u, std::thread::hardware_concurrency());
@@ -168,14 +168,17 @@ struct PacketCaster::Parts {
     }
 
     void cast_tiles() {
-        const int columns = (hemisphere.resolution + kTileWidth - 1) / kTileWidth;
+        const int columns = (hemispheres.front().resolution + kTileWidth - 1) / kTileWidth;
+        const int tiles = columns * columns, end = tiles * static_cast<int>(hemispheres.size());
         Run run;
-        for (int tile = next_tile++; tile < columns * columns; tile = next_tile++)
-            cast_tile(tile % columns * kTileWidth, tile / columns * kTileWidth, run);
+        for (int next = next_tile++; next < end; next = next_tile++)
+            cast_tile(hemispheres[static_cast<std::size_t>(next / tiles)],
+                      next % tiles % columns * kTileWidth, next % tiles / columns * kTileWidth,
+                      run);
         add(run, counts);
     }
 
-    void cast_tile(int column, int row, Run& run) {
+    void cast_tile(const Hemisphere& hemisphere, int column, int row, Run& run) {
         std::array<RTCRayHit16, kTilePackets> packets;
         unsigned used = 0;
         for (int y = row; y < row + kTileWidth; y += kPacketWidth)
@@ -195,9 +198,11 @@ PacketCaster::PacketCaster(const PatchArrays& patches) : parts_(std::make_unique
 
 PacketCaster::~PacketCaster() = default;
 
-std::span<const std::int32_t> PacketCaster::count(const device::Shot& aimed,
+std::span<const std::int32_t> PacketCaster::count(std::span<const device::Shot> aimed,
                                                   std::uint32_t resolution) {
-    parts_->hemisphere = hemisphere_of(aimed, resolution);
+    parts_->hemispheres.clear();
+    for (const device::Shot& shot : aimed)
+        parts_->hemispheres.push_back(hemisphere_of(shot, resolution));
     std::fill(parts_->counts.begin(), parts_->counts.end(), 0);
     parts_->next_tile = 0;
     parts_->start.arrive_and_wait();

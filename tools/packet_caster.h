@@ -16,9 +16,10 @@ class PacketCaster {
     explicit PacketCaster(const PatchArrays& patches);
     ~PacketCaster();
 
-    /// The disk's proxels by the patch that their rays meet, [patch]; `aimed` gives the
-    /// hemisphere's origin and axes. Valid until the next call.
-    std::span<const std::int32_t> count(const device::Shot& aimed, std::uint32_t resolution);
+    /// The disks' proxels by the patch that their rays meet, [patch], of all hemispheres whose
+    /// origins and axes `aimed` gives; there is one or more. Valid until the next call.
+    std::span<const std::int32_t> count(std::span<const device::Shot> aimed,
+                                        std::uint32_t resolution);
 
   private:
     struct Parts;

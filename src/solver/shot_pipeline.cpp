@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "errors.h"
@@ -413,8 +414,10 @@ void ShotPipeline::set_shot(const device::Shot& shot) {
 }
 
 void ShotPipeline::set_shooter(std::uint32_t shooter, std::uint32_t part) {
+    static_assert(offsetof(device::Shot, origin) == 4 * kNextShooterWords);
     device::Shot next{};
     next.shooter = static_cast<std::int32_t>(shooter);
+    next.plane = -1;
     next.part = part;
     next.part_count = part_count(shooter);
     next.status = kRunning;
