@@ -6,6 +6,7 @@
 #include "compensated.clh"
 #include "progress.clh"
 #include "shared.h"
+#include "sixteen_sums.clh"
 
 #ifdef FORM_FACTOR_ANALYTIC
 
@@ -44,31 +45,53 @@ static void receive(real_v form_factor, const __global float* shot_flux, int str
     }
 }
 
+// The shooter's form factors to a block of patches; those that were not known are spent. Returns the
+// proxels that the block owns.
+static int form_factors_to(const __global Shot* shot, __global int* proxel_count,
+                           float proxels_shot, __global float* factors, int stride,
+                           const __global float* row, int block, real_v* form_factor) {
+    int owned = 0;
+    for (int step = 0; step < BLOCK_VECTORS; ++step) {
+        const int patch = block * kReduceBlock + step * LANES;
+        if (shot->row_known)
+            form_factor[step] = load_v(patch, row);
+        else
+#ifdef FORM_FACTOR_ANALYTIC
+            form_factor[step] = take_form_factors(shot, factors, stride, patch);
+#else
+            form_factor[step] = take_counts(proxel_count, proxels_shot, patch, &owned);
+#endif
+    }
+    return owned;
+}
+
+static void keep_block(const real_v* form_factor, int block, __global float* row) {
+    for (int step = 0; step < BLOCK_VECTORS; ++step)
+        *real_vectors(row + block * kReduceBlock + step * LANES) = form_factor[step];
+}
+
+static void receive_block(const real_v* form_factor, const __global float* shot_flux, int stride,
+                          int block, __global float* received, __global float* received_rest) {
+    for (int step = 0; step < BLOCK_VECTORS; ++step)
+        receive(form_factor[step], shot_flux, stride, block * kReduceBlock + step * LANES,
+                received, received_rest);
+}
+
 __kernel void update_radiosity(const __global Shot* shot, const __global float* shot_flux,
                                __global int* proxel_count, int disk_proxels,
                                __global float* factors, int stride, __global float* rows,
                                __global float* received, __global float* received_rest) {
     if (!is_shooting(shot)) return;
-    const bool row_known = shot->row_known;
     const float proxels_shot = disk_proxels * max(shot->part_count, 1u);
     __global float* row = rows + (size_t)shot->row * stride;
     int owned = 0;
     for (int block = get_global_id(0); block < stride / kReduceBlock;
-         block += get_global_size(0))
-        for (int step = 0; step < kReduceBlock / LANES; ++step) {
-            const int patch = block * kReduceBlock + step * LANES;
-            real_v form_factor;
-            if (row_known) {
-                form_factor = load_v(patch, row);
-            } else {
-#ifdef FORM_FACTOR_ANALYTIC
-                form_factor = take_form_factors(shot, factors, stride, patch);
-#else
-                form_factor = take_counts(proxel_count, proxels_shot, patch, &owned);
-#endif
-                *real_vectors(row + patch) = form_factor;
-            }
-            receive(form_factor, shot_flux, stride, patch, received, received_rest);
-        }
+         block += get_global_size(0)) {
+        real_v form_factor[BLOCK_VECTORS];
+        owned += form_factors_to(shot, proxel_count, proxels_shot, factors, stride, row, block,
+                                 form_factor);
+        if (!shot->row_known) keep_block(form_factor, block, row);
+        receive_block(form_factor, shot_flux, stride, block, received, received_rest);
+    }
     if (owned != 0) atomic_add(proxel_count + stride + 2, owned);
 }

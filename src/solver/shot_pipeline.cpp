@@ -394,8 +394,8 @@ void ShotPipeline::receive_flux() {
         return;
     }
     acu_.issue(kernel("receive_flux"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, received_,
-               received_rest_, first_patch_, std::int32_t(shooter_stride_), unshot_, reflectance_,
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_,
+               std::int32_t(row_capacity_), received_, received_rest_, unshot_, reflectance_,
                band_weight_, summaries_, block_unshot_);
 }
 
