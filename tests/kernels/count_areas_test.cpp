@@ -46,7 +46,9 @@ TEST_P(CountAreas, EveryPeCountsItsPatchesThatTouchEachTile) {
 TEST(CountAreasOfOneTile, EdgesOfRectanglesCountAndEmptyOnesDoNot) {
     const Shape shape{1, 1, 1, 10, 10};
     const Stacks stacks(shape, 16);
-    RectangleStacks rectangles{std::vector<device::Rectangle>(stacks.slots()), {4, 0}};
+    RectangleStacks rectangles{std::vector<device::Rectangle>(stacks.slots()),
+                               std::vector<std::int32_t>(stacks.count(), 0)};
+    rectangles.heights[0] = 4;
     const auto set = [&](int level, std::uint32_t columns, std::uint32_t rows) {
         rectangles.rectangles[level] = {columns, rows};
     };
@@ -58,7 +60,7 @@ TEST(CountAreasOfOneTile, EdgesOfRectanglesCountAndEmptyOnesDoNot) {
 
     const auto counts = counts_of(rectangles, stacks, shape, 400);
 
-    std::vector<std::int32_t> expected(800, 0);
+    std::vector<std::int32_t> expected(400 * stacks.count(), 0);
     expected[0] = 1;
     expected[1] = 2;
     expected[399] = 1;

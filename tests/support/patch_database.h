@@ -82,7 +82,7 @@ struct Stacks {
     std::uint32_t depth;
 
     Stacks(const Shape& shape, std::uint32_t stride)
-        : grid{2, std::size_t{shape.width} * shape.height} {
+        : grid{5, std::size_t{shape.width} * shape.height} {  // odd, more than two: see stacks.clh
         const auto pes = static_cast<std::uint32_t>(count());
         depth =
             ((stride + pes - 1) / pes + kClusterPatches - 1) / kClusterPatches * kClusterPatches;
