@@ -1,5 +1,6 @@
 // First level of the sums over all patches that close a shot's analytic form factors: of the
-// factors, and of the doubt about them. block_sums: [block][visible, doubtful].
+// factors, and of the doubt about them. block_sums:
+// [station][block][visible, doubtful].
 #include "progress.clh"
 #include "shared.h"
 #include "sixteen_sums.clh"
@@ -12,11 +13,16 @@ static float block_sum(const __global float* values, int block) {
     return total_of(sums);
 }
 
-__kernel void add_up_factors(const __global Shot* shot, const __global float* factors, int stride,
-                             __global float* block_sums) {
-    if (!is_closing_row(shot)) return;
-    const int pe = get_global_id(0), pe_count = get_global_size(0);
-    for (int block = pe; block < stride / kReduceBlock; block += pe_count) {
+__kernel void add_up_factors(const __global Shot* salvo, const __global float* all_factors,
+                             int stride, __global float* all_sums) {
+    const Part own = own_part(salvo, closing_members(salvo));
+    if (own.member < 0) return;
+    const int block_count = stride / kReduceBlock;
+    const int pe = own.share * get_local_size(0) + get_local_id(0);
+    const int pe_count = get_global_size(0) / SALVO;
+    const __global float* factors = all_factors + own.station * kFactorKinds * stride;
+    __global float* block_sums = all_sums + 2 * own.station * block_count;
+    for (int block = pe; block < block_count; block += pe_count) {
         block_sums[2 * block] = block_sum(factors + kVisibleFactor * stride, block);
         block_sums[2 * block + 1] = block_sum(factors + kDoubtfulFactor * stride, block);
     }

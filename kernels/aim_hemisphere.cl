@@ -112,11 +112,14 @@ static void store_axis(float3 axis, __global float* to) {
     to[2] = axis.z;
 }
 
-__kernel void aim_hemisphere(__global Shot* shot, const __global int* corners,
+__kernel void aim_hemisphere(__global Shot* salvo, const __global int* corners,
                              const __global float* normals, const __global int* planes,
                              int stride, const __global int* shooter_samples) {
+    __global Shot* shot = salvo + get_global_id(0);
     if (!is_projecting(shot)) return;
     const int shooter = shot->shooter, samples = shooter_samples[shooter], part = shot->part;
+    shot->is_done = part == samples * samples;
+    if (shot->is_done) return;
     ++shot->part;
     shot->part_count = samples * samples;
     int3 steps[4];

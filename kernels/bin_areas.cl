@@ -5,14 +5,14 @@
 #include "stacks.clh"
 #include "tiles.clh"
 
-__kernel void bin_areas(const __global Shot* shot, const __global Rectangle* rectangles,
+__kernel void bin_areas(const __global Shot* salvo, const __global Rectangle* rectangles,
                         const __global int* projection_count, int depth, __global int* places,
                         __global int* lists) {
-    if (!is_projecting(shot)) return;
-    const int pe = own_stack();
-    __global int* mine = places + pe * TILE_COUNT;
-    const int end = pe * depth + projection_count[pe];
-    for (int slot = pe * depth; slot < end; ++slot) {
+    const Stack own = own_stack(salvo);
+    if (own.member < 0) return;
+    __global int* mine = places + own.place * TILE_COUNT;
+    const int end = own.place * depth + projection_count[own.place];
+    for (int slot = own.place * depth; slot < end; ++slot) {
         const TileSpan span = tile_span(rectangles[slot]);
         for (int row = span.first_row; row <= span.last_row; ++row)
             for (int column = span.first_column; column <= span.last_column; ++column)

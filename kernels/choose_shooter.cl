@@ -1,9 +1,13 @@
-// Sec. 1.5.4: the most energetic shooter of all, from those of the blocks; ties go to the lowest.
-// Closes the books of the shot that was just made: shots, escaped flux, closure, convergence.
+// Sec. 1.5.4: the most energetic shooter of all, from those of the blocks; ties go to the lowest. Of a
+// salvo, the most energetic ones of so many blocks. Closes the books of the shots that were just made:
+// shots, escaped flux, closure, convergence.
 #include "progress.clh"
 #include "shared.h"
 
 #pragma OPENCL FP_CONTRACT OFF
+
+// How many of the most energetic shooters are looked at: a salvo, and as many that may look ahead.
+#define RANKS MEMBERS
 
 // Compensated, see compensated.clh: at most once a shot.
 static void add_escaped(__global float* sum, __global float* rest, float value) {
@@ -17,108 +21,189 @@ static void add_escaped(__global float* sum, __global float* rest, float value) 
 // Counts beyond the patches': of proxels that escaped, of those outside the disk, and of those that
 // patches own but are not, or no more, counted for them: see update_radiosity.cl,
 // estimate_form_factors.cl and coverage.clh.
-static void close_counts(__global Shot* shot, __global int* spare_counts, int disk_proxels) {
+static void close_counts(__global Shot* books, __global Shot* shot, __global int* spare_counts,
+                         int disk_proxels) {
     const uint escapes = spare_counts[0], owned = spare_counts[2];
     const int shot_proxels = disk_proxels * shot->part_count;
     const int surplus = (int)(owned + escapes) - shot_proxels;
 #ifndef FORM_FACTOR_ANALYTIC
     shot->escaped_fraction = (float)escapes / shot_proxels;
 #endif
-    shot->least_surplus = min(shot->least_surplus, surplus);
-    shot->most_surplus = max(shot->most_surplus, surplus);
+    books->least_surplus = min(books->least_surplus, surplus);
+    books->most_surplus = max(books->most_surplus, surplus);
     shot->escaped_proxels = escapes;
     for (int kind = 0; kind < kSpareCounts; ++kind) spare_counts[kind] = 0;
 }
 
 // The first rows are kept: who has the most flux shoots first and most often.
-static void keep_row(__global Shot* shot, int row_capacity, __global int* row_of,
-                     __global float* row_escaped) {
+static void keep_row(__global Shot* books, const __global Shot* shot, int row_capacity,
+                     __global int* row_of, __global float* row_escaped) {
     row_escaped[shot->row] = shot->escaped_fraction;
-    if (shot->row == row_capacity) return;
+    if (shot->row >= row_capacity) return;
     row_of[shot->shooter] = shot->row + 1;
-    ++shot->rows_kept;
+    ++books->rows_kept;
 }
 
-static void close_books(__global Shot* shot, const __global float* shot_flux,
-                        const __global float* row_escaped, __global float* escaped) {
-    for (int band = 0; band < BANDS; ++band)
-        add_escaped(escaped + band, escaped + BANDS + band,
-                    shot_flux[band] * row_escaped[shot->row]);
-    ++shot->shots;
-    shot->repeated_shots += shot->row_known;
-}
-
-// The more energetic of two, the lower of equals. Adds the rest up.
-static void merge(__local BlockSummary* into, __local float* left, BlockSummary other,
-                  const __local float* other_left) {
-    if (other.energy > into->energy ||
-        (other.energy == into->energy && other.shooter < into->shooter)) {
-        into->energy = other.energy;
-        into->shooter = other.shooter;
+static void close_salvo(__global Shot* salvo, __global int* proxel_counts, int stride,
+                        int disk_proxels, const __global float* shot_flux, int row_capacity,
+                        __global int* row_of, __global float* row_escaped,
+                        __global float* escaped) {
+    int station = 0;
+    for (int member = 0; member < MEMBERS; ++member) {
+        __global Shot* shot = salvo + member;
+        if (shot->shooter < 0) break;
+        if (!shot->row_known) {
+            close_counts(salvo, shot,
+                         proxel_counts + station++ * (stride + kCountsGap) + stride,
+                         disk_proxels);
+            keep_row(salvo, shot, row_capacity, row_of, row_escaped);
+        }
+        if (shot->is_ahead) continue;
+        for (int band = 0; band < BANDS; ++band)
+            add_escaped(escaped + band, escaped + BANDS + band,
+                        shot_flux[member * BANDS + band] * row_escaped[shot->row]);
+        ++salvo->shots;
+        salvo->repeated_shots += shot->row_known;
     }
-    for (int band = 0; band < BANDS; ++band) left[band] += other_left[band];
+    salvo->repeated_salvos += station == 0;
 }
 
-// Fluxes are parts of what a band emits; band_weight is 0 for a dark band, else 1.
-static void aim_at(__global Shot* shot, BlockSummary best, const __local float* left,
-                   const __global float* unshot, int shooter_stride,
-                   const __global float* band_weight, float tolerance, __global float* shot_flux) {
-    float unshot_fraction = 0.0f;
-    for (int band = 0; band < BANDS; ++band) {
-        unshot_fraction = max(unshot_fraction, left[band] * band_weight[band]);
-        shot_flux[band] = unshot[band * shooter_stride + best.shooter];
-    }
-    shot->unshot_fraction = unshot_fraction;
-    shot->shooter = best.shooter;
-    if (shot->shots >= shot->shot_limit) shot->status = kPaused;
-    if (unshot_fraction < tolerance) shot->status = kConverged;
-    // A part of the flux that is no normal float: reflections would round it up again, for ever.
-    if (!(best.energy > FLT_MIN)) shot->status = kExhausted;
+// Shooters in the order in which they shoot: by energy, then by number.
+static bool shoots_before(BlockSummary a, BlockSummary b) {
+    return a.energy > b.energy || (a.energy == b.energy && a.shooter < b.shooter);
 }
 
 // A known row makes the shot without further hemispheres; a row that is not kept goes behind those
-// that are.
-static void find_row(__global Shot* shot, const __global int* row_of, int row_capacity) {
-    const int known = row_of[shot->shooter];
+// that are. Returns how many rows are kept, or promised to be.
+static int enlist(__global Shot* salvo, int member, int shooter, int row_capacity,
+                  const __global int* row_of, int rows) {
+    __global Shot* shot = salvo + member;
+    const int known = row_of[shooter];
+    shot->shooter = shooter;
     shot->row_known = known > 0;
-    shot->row = known > 0 ? known - 1 : min((int)shot->rows_kept, row_capacity);
+    shot->row = known > 0             ? known - 1
+                : rows < row_capacity ? rows
+                                      : row_capacity + member;
     shot->part = shot->row_known;
     shot->part_count = 1;
+    shot->is_done = shot->is_ahead = 0;
+    return rows + (known == 0);
 }
 
-__kernel void choose_shooter(__global Shot* shot, const __global BlockSummary* summaries,
+// Behind the last of a salvo: a shot by a known row, at nothing.
+static void leave_out(__global Shot* shot) {
+    shot->shooter = -1;
+    shot->row = 0;
+    shot->row_known = 1;
+    shot->part = shot->part_count = 1;
+}
+
+// Who shoots: the most energetic ones, so far as each has kLeastShare of the first one's energy; crumbs
+// are better left to grow. Where one of them has to look, those that are to shoot soon look ahead, if
+// they have no row yet and it can be kept, as far as there are stations.
+#define kLeastShare 0.5f
+#define kLeastShareAhead 0.25f
+static void aim_salvo(__global Shot* salvo, const BlockSummary* best,
+                      const __global float* unshot, int shooter_stride, int row_capacity,
+                      const __global int* row_of, __global float* shot_flux) {
+    const int kept = salvo->rows_kept;
+    int rows = kept, size = 0;
+    for (; size < SALVO; ++size) {
+        const BlockSummary next = best[size];
+        if (size > 0 && (next.energy < kLeastShare * best->energy ||
+                         salvo->shots + size >= salvo->most_shots))
+            break;
+        for (int band = 0; band < BANDS; ++band)
+            shot_flux[size * BANDS + band] = unshot[band * shooter_stride + next.shooter];
+        rows = enlist(salvo, size, next.shooter, row_capacity, row_of, rows);
+    }
+    const int end = rows > kept ? min(kept + SALVO, row_capacity) : 0;
+    for (int rank = size; rank < RANKS && rows < end; ++rank) {
+        const BlockSummary next = best[rank];
+        if (next.energy < kLeastShareAhead * best->energy) break;
+        if (row_of[next.shooter] != 0) continue;
+        rows = enlist(salvo, size, next.shooter, row_capacity, row_of, rows);
+        salvo[size++].is_ahead = 1;
+    }
+    for (; size < MEMBERS; ++size) leave_out(salvo + size);
+}
+
+// Fluxes are parts of what a band emits; band_weight is 0 for a dark band, else 1.
+static float unshot_fraction_of(const __local float* left, const __global float* band_weight) {
+    float unshot_fraction = 0.0f;
+    for (int band = 0; band < BANDS; ++band)
+        unshot_fraction = max(unshot_fraction, left[band] * band_weight[band]);
+    return unshot_fraction;
+}
+
+static int next_status(const __global Shot* books, float energy, float tolerance) {
+    // A part of the flux that is no normal float: reflections would round it up again, for ever.
+    if (!(energy > FLT_MIN)) return kExhausted;
+    if (books->unshot_fraction < tolerance) return kConverged;
+    return books->shots >= books->shot_limit ? kPaused : kRunning;
+}
+
+// The blocks' shooters that one of REDUCE_PES PEs goes through, in the order in which they shoot.
+static void rank_blocks(const __global BlockSummary* summaries, int block_count, int pe,
+                        __local BlockSummary* best) {
+    const BlockSummary none = {-1.0f, 0};
+    for (int rank = 0; rank < RANKS; ++rank) best[rank] = none;
+    for (int block = pe; block < block_count; block += REDUCE_PES) {
+        BlockSummary next = summaries[block];
+        if (!shoots_before(next, best[RANKS - 1])) continue;
+        for (int rank = 0; rank < RANKS; ++rank)
+            if (shoots_before(next, best[rank])) {
+                const BlockSummary later = best[rank];
+                best[rank] = next;
+                next = later;
+            }
+    }
+}
+
+// Of all PEs' the first RANKS, by merging.
+static void merge_ranks(const __local BlockSummary* best, BlockSummary* merged) {
+    int taken[REDUCE_PES];
+    for (int pe = 0; pe < REDUCE_PES; ++pe) taken[pe] = 0;
+    for (int rank = 0; rank < RANKS; ++rank) {
+        int from = 0;
+        for (int pe = 1; pe < REDUCE_PES; ++pe)
+            if (shoots_before(best[pe * RANKS + taken[pe]], best[from * RANKS + taken[from]]))
+                from = pe;
+        merged[rank] = best[from * RANKS + taken[from]];
+        taken[from] = min(taken[from] + 1, RANKS - 1);
+    }
+}
+
+__kernel void choose_shooter(__global Shot* salvo, const __global BlockSummary* summaries,
                              const __global float* block_unshot, int block_count,
                              const __global float* unshot, int shooter_stride,
                              const __global float* band_weight, float tolerance, int disk_proxels,
-                             __global int* proxel_count, int stride, __global float* escaped,
+                             __global int* proxel_counts, int stride, __global float* escaped,
                              __global float* shot_flux, int row_capacity, __global int* row_of,
                              __global float* row_escaped) {
-    __local BlockSummary summary[REDUCE_PES];
+    __local BlockSummary best[REDUCE_PES * RANKS];
     __local float left[REDUCE_PES * BANDS];
     const int pe = get_local_id(0);
-    BlockSummary mine = {-1.0f, 0};
-    for (int band = 0; band < BANDS; ++band) left[pe * BANDS + band] = 0.0f;
-    for (int block = pe; block < block_count; block += REDUCE_PES) {
-        const BlockSummary next = summaries[block];
-        if (next.energy > mine.energy) mine = next;
-        for (int band = 0; band < BANDS; ++band)
-            left[pe * BANDS + band] += block_unshot[block * BANDS + band];
+    for (int band = 0; band < BANDS; ++band) {
+        float sum = 0.0f;
+        for (int block = pe; block < block_count; block += REDUCE_PES)
+            sum += block_unshot[block * BANDS + band];
+        left[pe * BANDS + band] = sum;
     }
-    summary[pe] = mine;
+    rank_blocks(summaries, block_count, pe, best + pe * RANKS);
     barrier(CLK_LOCAL_MEM_FENCE);
 
     // No work-item may leave before a barrier, see prefix_sum.cl.
-    if (pe == 0 && is_shooting(shot)) {
+    if (pe == 0 && is_shooting(salvo)) {
+        close_salvo(salvo, proxel_counts, stride, disk_proxels, shot_flux, row_capacity, row_of,
+                    row_escaped, escaped);
         for (int other = 1; other < REDUCE_PES; ++other)
-            merge(summary, left, summary[other], left + other * BANDS);
-        if (shot->shooter >= 0) {
-            if (!shot->row_known) {
-                close_counts(shot, proxel_count + stride, disk_proxels);
-                keep_row(shot, row_capacity, row_of, row_escaped);
-            }
-            close_books(shot, shot_flux, row_escaped, escaped);
-        }
-        aim_at(shot, summary[0], left, unshot, shooter_stride, band_weight, tolerance, shot_flux);
-        find_row(shot, row_of, row_capacity);
+            for (int band = 0; band < BANDS; ++band) left[band] += left[other * BANDS + band];
+        salvo->unshot_fraction = unshot_fraction_of(left, band_weight);
+        BlockSummary ranked[RANKS];
+        merge_ranks(best, ranked);
+        const int status = next_status(salvo, ranked[0].energy, tolerance);
+        aim_salvo(salvo, ranked, unshot, shooter_stride, row_capacity, row_of, shot_flux);
+        for (int member = 0; member < MEMBERS; ++member) salvo[member].status = status;
     }
 }

@@ -59,16 +59,17 @@ static int share_visible(const __global Shot* shot, const __global Cluster* clus
                share_before(above - above_by, above + above_by));
 }
 
-__kernel void cull_patches(const __global Shot* shot, const __global Cluster* clusters,
+__kernel void cull_patches(const __global Shot* salvo, const __global Cluster* clusters,
                            const __global int* corners, const __global float* normals,
                            const __global int* planes, int stride, int depth,
                            __global Level* stack, __global int* stack_height) {
-    if (!is_projecting(shot)) return;
-    const int pe = own_stack();
-    const int end = min((pe + 1) * depth, stride);
-    __global Level* top = stack + pe * (depth / LANES);
+    const Stack own = own_stack(salvo);
+    if (own.member < 0) return;
+    const __global Shot* shot = salvo + own.member;
+    const int end = min((own.pe + 1) * depth, stride);
+    __global Level* top = stack + own.place * (depth / LANES);
     int height = 0;
-    for (int first = pe * depth; first < end; first += kClusterPatches) {
+    for (int first = own.pe * depth; first < end; first += kClusterPatches) {
         const int share = share_visible(shot, clusters + first / kClusterPatches);
         if (share == kNone) continue;
         for (int patch = first; patch < first + kClusterPatches; patch += LANES) {
@@ -79,5 +80,5 @@ __kernel void cull_patches(const __global Shot* shot, const __global Cluster* cl
             if (level.visible != 0) top[height++] = level;
         }
     }
-    stack_height[pe] = height;
+    stack_height[own.place] = height;
 }

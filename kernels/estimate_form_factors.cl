@@ -1,7 +1,7 @@
 // Form factors that are exact where nothing hides a patch: its closed form, times the fraction of
 // the proxels inside its outline that it owns. Counting alone (sec. 1.5.4) errs by the proxels that
 // the outline cuts; here only the outlines of what hides a patch matter. Each PE takes the visible
-// patches of its stack; the counts of the hemisphere are spent.
+// patches of its stack, LANES at a time; the counts of the hemisphere are spent.
 #include "patches.clh"
 #include "plane.clh"
 #include "point_to_polygon.clh"
@@ -16,11 +16,11 @@ static float3 normal_at(const __global float* normals, int stride, int patch) {
     return (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
 }
 
-// Corner k of a patch as seen from the hemisphere's centre.
+// The first corner of a patch as seen from the hemisphere's centre.
 static float3 corner_at(const __global Shot* shot, const __global int* corners, int stride,
-                        int patch, int k) {
-    const __global int* at = corners + 3 * k * stride + patch;
-    const int3 corner = (int3)(at[0], at[stride], at[2 * stride]);
+                        int patch) {
+    const int3 corner =
+        (int3)(corners[patch], corners[stride + patch], corners[2 * stride + patch]);
     return kGridStep *
            convert_float3(corner - (int3)(shot->origin[0], shot->origin[1], shot->origin[2]));
 }
@@ -29,62 +29,88 @@ static float3 corner_at(const __global Shot* shot, const __global int* corners, 
 static bool hides(const __global Shot* shot, const __global int* corners,
                   const __global float* normals, int stride, int owner, float3 middle) {
     const float3 normal = normal_at(normals, stride, owner);
-    const float height = dot(normal, corner_at(shot, corners, stride, owner, 0));
+    const float height = dot(normal, corner_at(shot, corners, stride, owner));
     const float along = dot(normal, middle);
     return along < 0.0f && height > (1.0f - kSamePlane) * along;
 }
 
-// A patch that covers no proxel's centre is as visible as its middle, and this is hidden where
-// whoever owns the proxel around it lies before it.
-static float sub_proxel_visibility(const __global Shot* shot, const __global int* corners,
-                                   const __global float* normals, int stride,
-                                   const __global int* owners, int patch, float3 direction) {
-    const float3 unit = normalize(direction);
-    const int column = clamp((int)((unit.x + 1.0f) * (0.5f * RESOLUTION)), 0, RESOLUTION - 1);
-    const int row = clamp((int)((unit.y + 1.0f) * (0.5f * RESOLUTION)), 0, RESOLUTION - 1);
-    const int owner = owners[proxel_place(column, row)];
-    if (owner >= stride || owner == patch) return 1.0f;
-    float3 middle = 0.0f;
-    for (int k = 0; k < CORNERS; ++k) middle += corner_at(shot, corners, stride, patch, k);
-    return hides(shot, corners, normals, stride, owner, middle / (float)CORNERS) ? 0.0f : 1.0f;
+static Point middle_of(const Point* corner) {
+    Point middle = corner[0];
+    for (int k = 1; k < CORNERS; ++k) middle = sum_v(middle, corner[k]);
+    return scaled_v((real_v)(1.0f / CORNERS), middle);
 }
 
-__kernel void estimate_form_factors(const __global Shot* shot, const __global int* corners,
+// The proxel around a direction of the shooter's frame, along one axis.
+static int_v proxel_around(real_v along, real_v distance) {
+    const int_v place = to_int_v((along / distance + 1.0f) * (0.5f * RESOLUTION));
+    return clamp(place, (int_v)0, (int_v)(RESOLUTION - 1));
+}
+
+// A patch that covers no proxel's centre is as visible as its middle, and this is hidden where
+// whoever owns the proxel around it lies before it. A bit for each of `asked` patches that is hidden.
+static int hidden_middles(const __global Shot* shot, const __global int* corners,
+                          const __global float* normals, int stride, const __global int* owners,
+                          int patch, int asked, Point middle, Point turned) {
+    const real_v distance = sqrt(dot_v(turned, turned));
+    const int_v column = proxel_around(turned.x, distance), row = proxel_around(turned.y, distance);
+    int hidden = 0;
+    for (int rest = asked; rest != 0; rest &= rest - 1) {
+        const int lane = lowest_bit(rest);
+        const int owner = owners[proxel_place(int_lane_of(column, lane), int_lane_of(row, lane))];
+        if (owner >= stride || owner == patch + lane) continue;
+        const float3 own = (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane),
+                                    lane_of(middle.z, lane));
+        hidden |= (int)hides(shot, corners, normals, stride, owner, own) << lane;
+    }
+    return hidden;
+}
+
+static void add_to(__global float* sums, real_v value) {
+    *real_vectors(sums) = load_v(0, sums) + value;
+}
+
+__kernel void estimate_form_factors(const __global Shot* salvo, const __global int* corners,
                                     const __global float* normals, int stride, int depth,
                                     const __global Level* stack, const __global int* stack_height,
-                                    const __global int* owners, __global int* proxel_count,
-                                    __global int* covered_count, __global float* factors) {
-    if (!is_projecting(shot)) return;
-    const int pe = own_stack();
-    const __global Level* level = stack + pe * (depth / LANES);
-    const __global Level* end = level + stack_height[pe];
-    int owned = 0;
+                                    const __global int* owners, __global int* proxel_counts,
+                                    __global int* covered_counts, __global float* factors) {
+    const Stack own = own_stack(salvo);
+    if (own.member < 0) return;
+    const __global Shot* shot = salvo + own.member;
+    const __global int* plane = owners + own.station * TILE_COUNT * TILE_VECTORS * LANES;
+    __global int* proxel_count = proxel_counts + own.station * (stride + kCountsGap);
+    const __global Level* level = stack + own.place * (depth / LANES);
+    const __global Level* end = level + stack_height[own.place];
+    int_v owned = (int_v)0;
     for (; level < end; ++level) {
         Point corner[CORNERS];
         relative_corners(shot, corners, stride, level->patch, corner);
+        const Point middle = middle_of(corner);
         turn_corners(shot, corner);
-        const real_v unblocked = point_to_polygon(corner);
-        Point middle = corner[0];
-        for (int k = 1; k < CORNERS; ++k) middle = sum_v(middle, corner[k]);
+        const int_v is_visible = lanes_of(level->visible);
+        const real_v unblocked =
+            choose_v(is_visible, point_to_polygon(corner), (real_v)0.0f);
 
-        for (int lane = 0; lane < LANES; ++lane) {
-            if ((level->visible >> lane & 1) == 0) continue;
-            const int patch = level->patch + lane;
-            const int covered = covered_count[patch], visible = proxel_count[patch];
-            const float factor = lane_of(unblocked, lane);
-            const float3 direction = (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane),
-                                              lane_of(middle.z, lane));
-            const float fraction =
-                covered > 0 ? (float)visible / covered
-                            : sub_proxel_visibility(shot, corners, normals, stride, owners, patch,
-                                                    direction);
-            owned += visible;
-            covered_count[patch] = 0;
-            proxel_count[patch] = 0;
-            factors[kVisibleFactor * stride + patch] += factor * fraction;
-            factors[kUnblockedFactor * stride + patch] += factor;
-            factors[kDoubtfulFactor * stride + patch] += factor * fraction * (1.0f - fraction);
+        __global int* count = proxel_count + level->patch;
+        __global int* covered = covered_counts + own.station * stride + level->patch;
+        const int_v visible = load_v(0, count), all = load_v(0, covered);
+        const int asked = level->visible & bits_of(all == 0);
+        real_v fraction = to_real_v(visible) / to_real_v(max(all, (int_v)1));
+        if (asked != 0) {
+            const int hidden = hidden_middles(shot, corners, normals, stride, plane, level->patch,
+                                              asked, middle, middle_of(corner));
+            fraction = choose_v(lanes_of(asked & ~hidden), (real_v)1.0f, fraction);
         }
+        owned += visible;
+        *int_vectors(count) = (int_v)0;
+        *int_vectors(covered) = (int_v)0;
+        const real_v seen = unblocked * fraction;
+        __global float* sums = factors + own.station * kFactorKinds * stride + level->patch;
+        add_to(sums + kVisibleFactor * stride, seen);
+        add_to(sums + kUnblockedFactor * stride, unblocked);
+        add_to(sums + kDoubtfulFactor * stride, seen * (1.0f - fraction));
     }
-    if (owned != 0) atomic_add(proxel_count + stride + 2, owned);
+    int total = 0;
+    for (int lane = 0; lane < LANES; ++lane) total += int_lane_of(owned, lane);
+    if (total != 0) atomic_add(proxel_count + stride + 2, total);
 }

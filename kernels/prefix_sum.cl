@@ -1,16 +1,20 @@
-// Turns counts, [PE][tile], into the places where each PE's part of a tile's list begins, in place,
-// and says where each tile's list ends: the lists lie one behind another, tile by tile and PE by PE.
-// By one array. More entries than `capacity` halt the shot; the host then enlarges the buffer and
+// Turns counts, [station][PE][tile], into the places where each PE's part of a tile's list begins, in
+// place, and says where each tile's list ends, [station][tile]: a station's lists lie one behind
+// another, tile by tile and PE by PE, from station * capacity on. By one array a station. More entries than `capacity` halt the shot; the host then enlarges the buffer and
 // repeats it.
 #include "progress.clh"
 #include "tiles.clh"
 
 // PoCL 3.1 miscompiles a kernel whose work-items may leave before a barrier, so all of them stay.
-__kernel void prefix_sum(__global Shot* shot, __global int* restrict counts, int stack_count,
-                         __global int* restrict list_end, uint capacity) {
+__kernel void prefix_sum(__global Shot* salvo, __global int* restrict all_counts, int stack_count,
+                         __global int* restrict list_ends, uint capacity) {
     __local ulong sums[PREFIX_PES];
-    const int pe = get_local_id(0);
-    const bool running = is_projecting(shot);
+    const int pe = get_local_id(0), station = get_group_id(0);
+    const int member = member_at(salvo, projecting_members(salvo), station);
+    const bool running = member >= 0;
+    __global Shot* shot = salvo + max(member, 0);
+    __global int* restrict counts = all_counts + station * stack_count * TILE_COUNT;
+    __global int* restrict list_end = list_ends + station * TILE_COUNT;
     const int share = running ? (TILE_COUNT + PREFIX_PES - 1) / PREFIX_PES : 0;
     const int first = min(pe * share, TILE_COUNT), end = min(first + share, TILE_COUNT);
     for (int tile = first; tile < end; ++tile) list_end[tile] = 0;
@@ -32,6 +36,7 @@ __kernel void prefix_sum(__global Shot* shot, __global int* restrict counts, int
         if (all > capacity) shot->status = kBinsFull;
     }
     if (all > capacity) return;  // behind the last barrier
+    before += (ulong)station * capacity;
 
     for (int tile = first; tile < end; ++tile) {
         const int of_tile = list_end[tile];

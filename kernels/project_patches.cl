@@ -86,10 +86,11 @@ static void clear_plane(int pe, int escaped, const __global real_v* roots, __loc
     }
 }
 
-__kernel void project_patches(const __global Shot* shot, const __global real_v* roots,
+__kernel void project_patches(const __global Shot* salvo, const __global real_v* roots,
                               const __global Projection* projections,
-                              const __global Rectangle* rectangles, const __global int* list_end,
-                              const __global int* lists, int escaped, __global int* proxel_count, __global int* covered_count,
+                              const __global Rectangle* rectangles, const __global int* list_ends,
+                              const __global int* lists, uint capacity, int escaped,
+                              __global int* proxel_counts, __global int* covered_counts,
                               __global int_v* owners, __global uint* activity_totals) {
     __local real_v depth[TILE_VECTORS];
     __local int_v owner[TILE_VECTORS];
@@ -98,14 +99,19 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
 #ifdef ACCUMULATE_XNET
     __local int wire[PE_COUNT];
 #endif
-    const int tile = get_group_id(0), pe = get_local_id(0);
+    const int pe = get_local_id(0);
+    const Part own = own_part(salvo, projecting_members(salvo));
+    // No work-item may leave before a barrier, see prefix_sum.cl: a halted shot has empty lists.
+    const bool running = own.member >= 0;
+    const int tile = own.share, station = own.station;
     const __global real_v* tile_roots = roots + tile * TILE_VECTORS;
+    const __global int* list_end = list_ends + station * TILE_COUNT;
+    __global int* proxel_count = proxel_counts + station * (escaped + kCountsGap);
+    __global int* covered_count = covered_counts + station * escaped;
 
     Activity activity = no_activity();
-    clear_plane(pe, escaped, tile_roots, depth, owner);
-    // No work-item may leave before a barrier, see prefix_sum.cl: a halted shot has empty lists.
-    const bool running = is_projecting(shot);
-    const int begin = running && tile != 0 ? list_end[tile - 1] : 0;
+    if (running) clear_plane(pe, escaped, tile_roots, depth, owner);
+    const int begin = !running ? 0 : tile != 0 ? list_end[tile - 1] : (int)(station * capacity);
     const int end = running ? list_end[tile] : 0;
     for (int first = begin; first < end; first += BROADCAST_PATCHES) {
         const int count = min(BROADCAST_PATCHES, end - first);
@@ -132,8 +138,8 @@ __kernel void project_patches(const __global Shot* shot, const __global real_v* 
     if (running) sum_by_histogram(owner, pe, escaped, proxel_count);
 #endif
 #ifdef KEEP_OWNERS
-    for (int layer = 0; layer < LAYERS; ++layer)
-        owners[tile * TILE_VECTORS + plural_index(layer, pe)] =
-            owner_of(owner[plural_index(layer, pe)]);
+    __global int_v* kept = owners + (station * TILE_COUNT + tile) * TILE_VECTORS;
+    for (int layer = 0; layer < (running ? LAYERS : 0); ++layer)
+        kept[plural_index(layer, pe)] = owner_of(owner[plural_index(layer, pe)]);
 #endif
 }

@@ -127,15 +127,16 @@ static int_v has_proxels(const Projections* of) {
 #endif
 }
 
-__kernel void set_up_projection(const __global Shot* shot, const __global int* corners,
+__kernel void set_up_projection(const __global Shot* salvo, const __global int* corners,
                                 const __global float* normals, int stride, int depth,
                                 const __global Level* stack, const __global int* stack_height,
                                 __global Projection* projections,
                                 __global Rectangle* rectangles, __global int* projection_count) {
-    if (!is_projecting(shot)) return;
-    const int pe = own_stack();
-    const __global Level* level = stack + pe * (depth / LANES);
-    const __global Level* end = level + stack_height[pe];
+    const Stack own = own_stack(salvo);
+    if (own.member < 0) return;
+    const __global Shot* shot = salvo + own.member;
+    const __global Level* level = stack + own.place * (depth / LANES);
+    const __global Level* end = level + stack_height[own.place];
     int count = 0;
     for (; level < end; ++level) {
         const int patch = level->patch;
@@ -155,8 +156,8 @@ __kernel void set_up_projection(const __global Shot* shot, const __global int* c
 #else
         of.depth = depth_plane(shot, normal, height);
 #endif
-        const int slot = pe * depth + count;
+        const int slot = own.place * depth + count;
         count += store_projections(&of, patch, kept, projections + slot, rectangles + slot);
     }
-    projection_count[pe] = count;
+    projection_count[own.place] = count;
 }

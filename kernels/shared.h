@@ -51,28 +51,33 @@ typedef uint uint32_t;
 #define kExhausted 3  // nothing is left to shoot
 #define kPaused 4     // as many shots as the host asked for
 
-// What the PEs know of the shooting patch, and the host of the progress. What tells one shooter from
-// the next comes first, kNextShooterWords of it: the host may send it ahead of the kernels.
+// What the PEs know of a shooting patch, and the host of the progress: SALVO of them, of those that
+// shoot at once. What tells one shooter from the next comes first, kNextShooterWords of it: the host
+// may send it ahead of the kernels.
 #define kNextShooterWords 8
 typedef struct {
-    int32_t shooter;
+    int32_t shooter;            // negative: none, as behind the last of a smaller salvo
     uint32_t part, part_count;  // its hemispheres: aimed so far, and all
     int32_t status;
     // Where its row of form factors lies, or goes to, and whether it is there already.
     int32_t row, row_known;
-    int32_t plane;         // the shooter's, as `planes`
-    uint32_t bin_entries;  // patches in the lists of all tiles
-    int32_t origin[3];     // one of the shooter's hemispheres, grid steps
+    int32_t plane;      // the shooter's, as `planes`
+    int32_t is_done;    // while others of the salvo have hemispheres left
+    int32_t origin[3];  // one of the shooter's hemispheres, grid steps
     float u_axis[3], v_axis[3], normal[3];
-    uint32_t shots, shot_limit;
-    float unshot_fraction;    // largest of the bands
-    // Closure, of all shots: proxels owned and escaped, less those of the disks; both 0.
-    int32_t least_surplus, most_surplus;
+    int32_t is_ahead;          // its row is found, but it does not shoot yet
+    uint32_t bin_entries;      // patches in the lists of all tiles
     uint32_t escaped_proxels;  // of the last shot
     // Analytic form factors of the last shot: what closes them, and what escapes.
     float factor_scale, residual_share, escaped_fraction;
+    // The books of all shots, kept in the first of a salvo. Shots pause once they have reached
+    // shot_limit, and never exceed most_shots.
+    uint32_t shots, shot_limit, most_shots;
+    float unshot_fraction;  // largest of the bands
+    // Closure, of all shots: proxels owned and escaped, less those of the disks; both 0.
+    int32_t least_surplus, most_surplus;
     uint32_t rows_kept;
-    uint32_t repeated_shots;  // by known rows
+    uint32_t repeated_shots, repeated_salvos;  // by known rows alone
 } Shot;
 
 // kClusterPatches consecutive patches: the box around their corners; the mean of their normals, how
@@ -119,12 +124,14 @@ typedef struct {
 #define kDoubtfulFactor 2
 #define kFactorKinds 3
 
-// After the patches' proxel counts: see choose_shooter.cl.
+// After the patches' proxel counts: see choose_shooter.cl. The counts of a salvo's shooters lie
+// stride + kCountsGap apart, as vectors ask.
 #define kSpareCounts 3
+#define kCountsGap 64
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 8);
-static_assert(sizeof(Shot) == 124);
+static_assert(sizeof(Shot) == 140);
 static_assert(sizeof(Cluster) == 44);
 static_assert(sizeof(Level) == 8);
 static_assert(sizeof(Projection) == 64);

@@ -5,11 +5,13 @@
 #include "progress.clh"
 #include "shared.h"
 
-__kernel void spread_residual(__global Shot* shot, const __global float* block_sums,
-                              int block_count, const __global int* proxel_count, int stride,
+__kernel void spread_residual(__global Shot* salvo, const __global float* all_sums,
+                              int block_count, const __global int* proxel_counts, int stride,
                               int disk_proxels) {
     __local float visible[REDUCE_PES], doubtful[REDUCE_PES];
-    const int pe = get_local_id(0);
+    const int pe = get_local_id(0), station = get_group_id(0);
+    const __global float* block_sums = all_sums + 2 * station * block_count;
+    const __global int* proxel_count = proxel_counts + station * (stride + kCountsGap);
     float visible_sum = 0.0f, doubtful_sum = 0.0f;
     for (int block = pe; block < block_count; block += REDUCE_PES) {
         visible_sum += block_sums[2 * block];
@@ -20,7 +22,9 @@ __kernel void spread_residual(__global Shot* shot, const __global float* block_s
     barrier(CLK_LOCAL_MEM_FENCE);
 
     // No work-item may leave before a barrier, see prefix_sum.cl.
-    if (pe == 0 && is_closing_row(shot)) {
+    const int member = member_at(salvo, closing_members(salvo), station);
+    if (pe == 0 && member >= 0) {
+        __global Shot* shot = salvo + member;
         for (int other = 1; other < REDUCE_PES; ++other) {
             visible[0] += visible[other];
             doubtful[0] += doubtful[other];

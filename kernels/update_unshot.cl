@@ -1,13 +1,10 @@
-// Sec. 1.5.4: what the shot's flux leaves to be shot. The shooter has none left but what it sent to
-// itself. Each PE then reduces the unshot flux of its blocks, the first level of the choice of the
+// Sec. 1.5.4: what the shots' flux leaves to be shot. A shooter has none left but what it and those
+// that shoot at once sent to it. Each PE then reduces the unshot flux of its blocks, the first level of the choice of the
 // most energetic shooter. With TWO_LEVELS (Cohen et al.) a shooter is a group of patches, their
 // elements, and reflects what all of these received.
 // rows: [row][patch]. unshot, reflectance: [band][shooter]; flux in normalised units.
 // first_patch: [shooter], and one more. block_unshot: [block][band].
-#include "lanes.clh"
-#include "progress.clh"
-#include "shared.h"
-#include "sixteen_sums.clh"
+#include "salvo.clh"
 
 #ifdef TWO_LEVELS
 
@@ -39,8 +36,23 @@ static real_v form_factor_to(const __global float* row, const __global int* firs
 
 #endif
 
+// The shooters of a salvo among LANES patches, which have shot what they had.
+static int_v are_shooters(const __global Shot* salvo, int size, int shooter) {
+    int_v result = (int_v)0;
+    for (int member = 0; member < size; ++member)
+        result |= equal_v((int_v)shooter + LANE_INDEX, (int_v)salvo[member].shooter);
+    return result;
+}
+
+static bool has_shooter(const __global Shot* salvo, int size, int block) {
+    bool result = false;
+    for (int member = 0; member < size; ++member)
+        result |= salvo[member].shooter / kReduceBlock == block;
+    return result;
+}
+
 // What is left to the shooters of a block, by the form factors to them.
-static void reduce_block(const __global Shot* shot, const real_v* form_factor,
+static void reduce_block(const __global Shot* salvo, int size, const real_v* form_factor,
                          const __global float* shot_flux, int block, int shooter_stride,
                          __global float* unshot, const __global float* reflectance,
                          const __global float* band_weight, __global BlockSummary* summaries,
@@ -49,15 +61,17 @@ static void reduce_block(const __global Shot* shot, const real_v* form_factor,
     real_v sums[BANDS][ACCUMULATORS];
     for (int band = 0; band < BANDS; ++band)
         for (int a = 0; a < ACCUMULATORS; ++a) sums[band][a] = (real_v)0.0f;
+    const bool has_shot = has_shooter(salvo, size, block);
     for (int step = 0; step < BLOCK_VECTORS; ++step) {
         const int shooter = block * kReduceBlock + step * LANES;
-        const int_v is_shooter = (shooter + LANE_INDEX) == shot->shooter ? (int_v)-1 : (int_v)0;
+        const int_v shot = has_shot ? are_shooters(salvo, size, shooter) : (int_v)0;
         real_v energy = (real_v)0.0f;
         for (int band = 0; band < BANDS; ++band) {
             const int at = band * shooter_stride + shooter;
-            const real_v kept = choose_v(is_shooter, (real_v)0.0f, load_v(at, unshot));
+            const real_v kept = choose_v(shot, (real_v)0.0f, load_v(at, unshot));
             const real_v left =
-                fma(load_v(at, reflectance), form_factor[step] * shot_flux[band], kept);
+                fma(load_v(at, reflectance), flux_to(form_factor, size, shot_flux, step, band),
+                    kept);
             *real_vectors(unshot + at) = left;
             energy = fma((real_v)band_weight[band], left, energy);
             sums[band][step % ACCUMULATORS] += left;
@@ -74,20 +88,22 @@ static void reduce_block(const __global Shot* shot, const real_v* form_factor,
         block_unshot[block * BANDS + band] = total_of(sums[band]);
 }
 
-__kernel void update_unshot(const __global Shot* shot, const __global float* shot_flux,
+__kernel void update_unshot(const __global Shot* salvo, const __global float* shot_flux,
                             const __global float* rows, int stride, const __global int* first_patch,
                             int shooter_stride, __global float* unshot,
                             const __global float* reflectance, const __global float* band_weight,
                             __global BlockSummary* summaries, __global float* block_unshot) {
-    if (!is_shooting(shot)) return;
-    const __global float* row = rows + (size_t)shot->row * stride;
+    if (!is_shooting(salvo)) return;
+    const int size = shooter_count(salvo);
     for (int block = get_global_id(0); block < shooter_stride / kReduceBlock;
          block += get_global_size(0)) {
-        real_v form_factor[BLOCK_VECTORS];
-        for (int step = 0; step < BLOCK_VECTORS; ++step)
-            form_factor[step] =
-                form_factor_to(row, first_patch, block * kReduceBlock + step * LANES);
-        reduce_block(shot, form_factor, shot_flux, block, shooter_stride, unshot, reflectance,
-                     band_weight, summaries, block_unshot);
+        real_v form_factor[SALVO * BLOCK_VECTORS];
+        for (int member = 0; member < size; ++member)
+            for (int step = 0; step < BLOCK_VECTORS; ++step)
+                form_factor[member * BLOCK_VECTORS + step] =
+                    form_factor_to(rows + (size_t)salvo[member].row * stride, first_patch,
+                                   block * kReduceBlock + step * LANES);
+        reduce_block(salvo, size, form_factor, shot_flux, block, shooter_stride, unshot,
+                     reflectance, band_weight, summaries, block_unshot);
     }
 }

@@ -1,13 +1,24 @@
 #include "mp1map/acu.h"
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+#include <cstdint>
+
 namespace mp1map {
 
 namespace {
 constexpr std::size_t kPendingEvents = 4096;  // read back in blocks: an event holds host memory
-}
+// Below, what the first touches of small pages cost does not matter.
+constexpr std::size_t kHugePage = std::size_t{2} << 20, kLeastHuge = 4 * kHugePage;
+}  // namespace
 
 Acu::Acu(const Device& device, bool timed)
-    : context_(device.context()), device_name_(device.summary().name), timed_(timed) {
+    : context_(device.context()),
+      device_name_(device.summary().name),
+      is_cpu_(device.summary().is_cpu),
+      timed_(timed) {
     guarded("command queue", [&] {
         queue_ =
             cl::CommandQueue(device.context(), device.handle(),
@@ -28,7 +39,25 @@ cl::Buffer Acu::allocated(std::size_t bytes) {
     cl::Buffer buffer;
     guarded("allocation of " + std::to_string(bytes) + " bytes",
             [&] { buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes); });
+    if (is_cpu_ && bytes >= kLeastHuge) ask_for_huge_pages(buffer, bytes);
     return buffer;
+}
+
+// A buffer of a CPU is the host's memory. On a virtual machine the first touch of a page was
+// measured to take 12 us, of 1 GiB in small pages 3.2 s, in huge ones 0.04 to 1.2 s.
+void Acu::ask_for_huge_pages([[maybe_unused]] const cl::Buffer& buffer,
+                             [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+    guarded("mapping", [&] {
+        void* const memory =
+            queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
+        const auto begin = reinterpret_cast<std::uintptr_t>(memory);
+        const auto first = (begin + kHugePage - 1) / kHugePage * kHugePage;
+        const auto end = (begin + bytes) / kHugePage * kHugePage;
+        madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);  // only advice
+        queue_.enqueueUnmapMemObject(buffer, memory);
+    });
+#endif
 }
 
 cl::Buffer Acu::zeroed(std::size_t bytes) {

@@ -110,6 +110,7 @@ class Acu {
     }
     [[noreturn]] void fail(const std::string& name, const cl::Error& error) const;
     cl::Buffer allocated(std::size_t bytes);
+    void ask_for_huge_pages(const cl::Buffer& buffer, std::size_t bytes);
     cl::Buffer zeroed(std::size_t bytes);
     void fill_zero(const cl::Buffer& buffer, std::size_t bytes);
     void write(const cl::Buffer& buffer, const void* values, std::size_t bytes);
@@ -121,7 +122,7 @@ class Acu {
     cl::CommandQueue queue_;
     std::string device_name_;
     std::uint64_t allocated_bytes_ = 0;
-    bool timed_ = false;
+    bool is_cpu_ = false, timed_ = false;
     std::vector<std::pair<std::string, cl::Event>> pending_;
     std::map<std::string, std::pair<double, std::uint64_t>> seconds_;
 };

@@ -28,6 +28,7 @@ struct Options {
     MeshSettings mesh;
     double tolerance = 1e-3;
     std::uint64_t row_mebibytes = 1024;
+    std::uint32_t salvo = 0;
     std::string csv;
 };
 
@@ -47,6 +48,7 @@ SolverSettings settings_of(const Options& options) {
     set_accuracy(settings, accuracy_at(static_cast<unsigned>(Quality::draft)));
     settings.tolerance = options.tolerance;
     settings.row_bytes = options.row_mebibytes << 20;
+    settings.salvo = options.salvo;
     return settings;
 }
 
@@ -111,6 +113,8 @@ Options parse(int argc, char** argv) {
     app.add_option("--element-size", options.mesh.element_size, "m")->check(CLI::PositiveNumber);
     app.add_option("--row-memory", options.row_mebibytes, "MiB; 0: every shot projects")
         ->check(CLI::Range(0, 1 << 24));
+    app.add_option("--salvo", options.salvo, "patches that shoot at once")
+        ->check(CLI::Range(1u, kMostSalvo));
     app.add_option("--tolerance", options.tolerance, "unshot / emitted at the end")
         ->check(CLI::PositiveNumber);
     app.add_option("--csv", options.csv, "file for the curve");

@@ -110,13 +110,9 @@ void print_memory(std::ostream& out, const Mesh& mesh, std::uint32_t resolution)
         return;
     }
     const auto device = mp1map::Device::open("");
-    const auto array = mp1map::fit_pe_array(device.summary(), {});
-    out << bytes_text(device_bytes(
-               mesh, resolution, SolverSettings{}.form_factor,
-               usable_row_bytes({}, mesh.shooter_count(), mesh.patches.size(), device.summary()),
-               array))
-        << " of " << bytes_text(device.summary().global_memory) << " on "
-        << printable(device.summary().name) << " at --resolution " << resolution << '\n';
+    out << bytes_text(device_bytes(mesh, resolution, SolverSettings{}, device.summary())) << " of "
+        << bytes_text(device.summary().global_memory) << " on " << printable(device.summary().name)
+        << " at --resolution " << resolution << '\n';
 }
 
 int print_info(InfoOptions options, std::ostream& out) {

@@ -4,12 +4,12 @@
 
 #include "mp1map/pe_array.h"
 #include "scene/mesh.h"
-#include "solver/shot_pipeline.h"
+#include "solver/solver.h"
 
 namespace hemirad {
 
-/// Bytes that solving a mesh will hold on the device.
-std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution, FormFactorMode mode,
-                           std::uint64_t row_bytes, const mp1map::PeArray& array);
+/// Bytes that solving a mesh will hold on the device. Of the settings' resolution nothing is read.
+std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution,
+                           const SolverSettings& settings, const mp1map::DeviceSummary& device);
 
 }  // namespace hemirad

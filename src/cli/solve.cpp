@@ -57,15 +57,10 @@ void require_light(const Work& work) {
 
 void require_memory(const Work& work, const SolveOptions& options,
                     const mp1map::DeviceSummary& device) {
-    const auto array = mp1map::fit_pe_array(device, options.solver.pe_array);
     const auto resolution = options.target_error
                                 ? accuracy_at(first_step(*options.target_error)).resolution
                                 : options.solver.resolution;
-    const auto needed =
-        device_bytes(work.mesh, resolution, options.solver.form_factor,
-                     usable_row_bytes(options.solver.row_bytes, work.mesh.shooter_count(),
-                                      work.mesh.patches.size(), device),
-                     array);
+    const auto needed = device_bytes(work.mesh, resolution, options.solver, device);
     if (needed <= device.global_memory) return;
     throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
                      " has " + bytes_text(device.global_memory) +

@@ -130,6 +130,12 @@ void add_machine_options(CLI::App& command, SolveOptions& options) {
               [&](const OptionValue& value) {
                   options.solver.row_bytes = whole_number(value, 0, 1u << 24) << 20;
               });
+    add_value(command,
+              {"--salvo", "N", "patches that shoot at once [8; 1 for small and very large meshes]"},
+              [&](const OptionValue& value) {
+                  options.solver.salvo =
+                      static_cast<std::uint32_t>(whole_number(value, 1, kMostSalvo));
+              });
     add_kernels(command, options.solver.kernels_dir);
 }
 
@@ -238,6 +244,7 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
     if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (options.target_error)
         result.emplace_back("--target-error", number_text(*options.target_error));
+    if (solver.salvo != 0) result.emplace_back("--salvo", std::to_string(solver.salvo));
     if (solver.max_shots != SolverSettings{}.max_shots)
         result.emplace_back("--max-shots", std::to_string(solver.max_shots));
     if (std::isfinite(solver.time_limit))

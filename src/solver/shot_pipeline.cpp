@@ -63,7 +63,7 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            definition("CORNERS", corner_count) + definition("BANDS", bands) +
            definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
            definition("BROADCAST_PATCHES", array.broadcast_patches()) +
-           flag("TWO_LEVELS", two_levels) +
+           definition("SALVO", settings.salvo) + flag("TWO_LEVELS", two_levels) +
            flag("LAYOUT_BLOCK", array.layout == mp1map::Layout::block) +
            flag("EVALUATE_INCREMENTAL", settings.variants.incremental) +
            flag("DISTANCE_CONSTANT", settings.variants.constant_distance) +
@@ -97,7 +97,7 @@ device::Shot first_shot() {
     shot.shooter = -1;
     shot.status = kRunning;
     shot.unshot_fraction = 1;
-    shot.shot_limit = std::numeric_limits<std::uint32_t>::max();
+    shot.shot_limit = shot.most_shots = std::numeric_limits<std::uint32_t>::max();
     shot.least_surplus = std::numeric_limits<std::int32_t>::max();
     shot.most_surplus = std::numeric_limits<std::int32_t>::min();
     return shot;
@@ -164,7 +164,8 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution) {
 std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shooters,
                                      std::uint32_t corner_count, std::size_t bands,
                                      std::uint32_t resolution, FormFactorMode mode,
-                                     std::uint64_t row_bytes, const mp1map::PeArray& array) {
+                                     std::uint64_t row_bytes, const mp1map::PeArray& array,
+                                     std::uint32_t salvo) {
     const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
     const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
@@ -174,12 +175,12 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
         stride * 4 * (3 * corner_count + 5) + stride / kClusterPatches * sizeof(device::Cluster);
     const std::uint64_t shooter_stride =
         std::uint64_t{quotient_up(shooters, kReduceBlock)} * kReduceBlock;
-    const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride) + 4 * stride;
+    const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride);
     const std::uint64_t groups =
         shooters < patches ? shooter_stride * 4 * (3 * corner_count + 6) : 0;
     const std::uint64_t projection =
         slots * (sizeof(device::Projection) + sizeof(device::Rectangle)) +
-        slots / array.lanes * sizeof(device::Level) + stacks * 8;
+        slots / array.lanes * sizeof(device::Level) + stacks * 8 + 4 * stride;
     const std::uint64_t lists = 4 * (list_capacity(stride) + tiles * (stacks + 1));
     const std::uint64_t plane = 4 * tiles * array.tile_width * array.tile_height;
     const std::uint64_t reduction =
@@ -187,8 +188,9 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t analytic =
         mode == FormFactorMode::analytic ? stride * 4 * (kFactorKinds + 2) + plane : 0;
     const std::uint64_t rows =
-        4 * ((row_capacity(shooters, stride, row_bytes) + 1) * (stride + 1) + shooter_stride);
-    return geometry + radiosity + groups + projection + lists + plane + reduction + analytic + rows;
+        4 * ((row_capacity(shooters, stride, row_bytes) + salvo) * (stride + 1) + shooter_stride);
+    return geometry + radiosity + groups + plane + reduction + rows +
+           salvo * (projection + lists + analytic);
 }
 
 ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
@@ -199,6 +201,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       resolution_(settings.resolution),
       stride_(patches.stride),
       shooter_stride_(shooters.first_patch.empty() ? stride_ : shooters.polygons.stride),
+      salvo_(settings.salvo),
       band_count_(light.band_count),
       tile_count_(count_tiles(resolution_, array_)),
       stack_count_(array_.array_count * array_.pe_count()),
@@ -215,23 +218,24 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     require_addressable(patches);
     require_countable(disk_proxels_, resolution_, samples_);
     build_kernels(device, settings, patches.corner_count);
-    shot_ = acu_.plural(std::vector{first_shot()});
+    shot_ = acu_.plural(std::vector(member_count(), first_shot()));
     clusters_ = acu_.plural(clusters_of(patches));
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
     planes_ = acu_.plural(patches.planes);
     load_shooters(shooters);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
-    stack_ = acu_.plural<device::Level>(std::size_t{stack_count_} * (depth_ / array_.lanes));
-    stack_height_ = acu_.plural<std::int32_t>(stack_count_);
-    projection_count_ = acu_.plural<std::int32_t>(stack_count_);
-    projections_ = acu_.plural<device::Projection>(std::size_t{stack_count_} * depth_);
+    const std::size_t stacks = std::size_t{salvo_} * stack_count_;
+    stack_ = acu_.plural<device::Level>(stacks * (depth_ / array_.lanes));
+    stack_height_ = acu_.plural<std::int32_t>(stacks);
+    projection_count_ = acu_.plural<std::int32_t>(stacks);
+    projections_ = acu_.plural<device::Projection>(stacks * depth_);
     rectangles_ = acu_.plural<device::Rectangle>(projections_.size());
-    places_ = acu_.plural<std::int32_t>(std::size_t{tile_count_} * stack_count_);
-    list_end_ = acu_.plural<std::int32_t>(tile_count_);
-    lists_ = acu_.plural<std::int32_t>(list_capacity(stride_));
-    proxel_count_ = acu_.plural<std::int32_t>(stride_ + kSpareCounts);
-    owners_ = acu_.plural<std::int32_t>(needs_owners(settings) ? roots_.size() : 0);
+    places_ = acu_.plural<std::int32_t>(stacks * tile_count_);
+    list_end_ = acu_.plural<std::int32_t>(std::size_t{salvo_} * tile_count_);
+    lists_ = acu_.plural<std::int32_t>(salvo_ * list_capacity(stride_));
+    proxel_count_ = acu_.plural<std::int32_t>(std::size_t{salvo_} * (stride_ + kCountsGap));
+    owners_ = acu_.plural<std::int32_t>(needs_owners(settings) ? salvo_ * roots_.size() : 0);
     load_near_pairs(settings.near_pairs);
     activity_ = acu_.plural<std::uint32_t>(kActivityCounters);
 
@@ -242,11 +246,11 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     unshot_ = acu_.plural(light.emitted);
     reflectance_ = acu_.plural(light.reflectance);
     band_weight_ = acu_.plural(light.band_weight);
-    shot_flux_ = acu_.plural<float>(band_count_);
+    shot_flux_ = acu_.plural<float>(salvo_ * band_count_);
     escaped_ = acu_.plural<float>(2 * band_count_);
-    // One row more, for shots whose row is not kept.
-    rows_ = acu_.unset_plural<float>((std::size_t{row_capacity_} + 1) * stride_);
-    row_escaped_ = acu_.plural<float>(row_capacity_ + 1);
+    // More rows, for shots whose row is not kept.
+    rows_ = acu_.unset_plural<float>((std::size_t{row_capacity_} + salvo_) * stride_);
+    row_escaped_ = acu_.plural<float>(row_capacity_ + salvo_);
     row_of_ = acu_.plural<std::int32_t>(shooter_stride_);
     summaries_ = acu_.plural<device::BlockSummary>(blocks);
     block_unshot_ = acu_.plural<float>(blocks * band_count_);
@@ -276,9 +280,9 @@ void ShotPipeline::load_shooters(const ShooterArrays& shooters) {
 
 void ShotPipeline::load_near_pairs(const NearPairs& pairs) {
     const std::size_t used = mode_ == FormFactorMode::analytic ? stride_ : 0;
-    covered_count_ = acu_.plural<std::int32_t>(used);
-    factors_ = acu_.plural<float>(kFactorKinds * used);
-    factor_block_sums_ = acu_.plural<float>(2 * used / kReduceBlock);
+    covered_count_ = acu_.plural<std::int32_t>(salvo_ * used);
+    factors_ = acu_.plural<float>(salvo_ * kFactorKinds * used);
+    factor_block_sums_ = acu_.plural<float>(salvo_ * 2 * used / kReduceBlock);
     std::vector<std::int32_t> begin = pairs.begin;
     begin.resize(used == 0 ? 1 : shooter_stride_ + 1, begin.empty() ? 0 : begin.back());
     near_begin_ = acu_.plural(begin);
@@ -298,28 +302,36 @@ mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.
 
 mp1map::Grid ShotPipeline::stack_grid() const { return {array_.array_count, array_.pe_count()}; }
 
-mp1map::Grid ShotPipeline::tile_grid() const { return {tile_count_, array_.pe_count()}; }
+mp1map::Grid ShotPipeline::salvo_stack_grid() const {
+    return {std::size_t{salvo_} * array_.array_count, array_.pe_count()};
+}
 
-void ShotPipeline::init_plane() { acu_.issue(kernel("init_plane"), tile_grid(), roots_); }
+mp1map::Grid ShotPipeline::salvo_tile_grid() const {
+    return {std::size_t{salvo_} * tile_count_, array_.pe_count()};
+}
+
+void ShotPipeline::init_plane() {
+    acu_.issue(kernel("init_plane"), {tile_count_, array_.pe_count()}, roots_);
+}
 
 void ShotPipeline::aim_hemisphere() {
-    acu_.issue(kernel("aim_hemisphere"), {1, 1}, shot_, shooter_corners_, shooter_normals_,
-               shooter_planes_, std::int32_t(shooter_stride_), shooter_samples_);
+    acu_.issue(kernel("aim_hemisphere"), {member_count(), 1}, shot_, shooter_corners_,
+               shooter_normals_, shooter_planes_, std::int32_t(shooter_stride_), shooter_samples_);
 }
 
 void ShotPipeline::cull_patches() {
-    acu_.issue(kernel("cull_patches"), stack_grid(), shot_, clusters_, corners_, normals_, planes_,
-               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
+    acu_.issue(kernel("cull_patches"), salvo_stack_grid(), shot_, clusters_, corners_, normals_,
+               planes_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
 }
 
 void ShotPipeline::set_up_projection() {
-    acu_.issue(kernel("set_up_projection"), stack_grid(), shot_, corners_, normals_,
+    acu_.issue(kernel("set_up_projection"), salvo_stack_grid(), shot_, corners_, normals_,
                std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, projections_,
                rectangles_, projection_count_);
 }
 
 void ShotPipeline::count_areas() {
-    acu_.issue(kernel("count_areas"), stack_grid(), shot_, rectangles_, projection_count_,
+    acu_.issue(kernel("count_areas"), salvo_stack_grid(), shot_, rectangles_, projection_count_,
                std::int32_t(depth_), places_);
 }
 
@@ -331,45 +343,45 @@ void ShotPipeline::prepare_patches() {
         count_areas();
         return;
     }
-    acu_.issue(kernel("prepare_patches"), stack_grid(), shot_, clusters_, corners_, normals_,
+    acu_.issue(kernel("prepare_patches"), salvo_stack_grid(), shot_, clusters_, corners_, normals_,
                planes_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_,
                projections_, rectangles_, projection_count_, places_);
 }
 
 void ShotPipeline::prefix_sum() {
-    acu_.issue(kernel("prefix_sum"), {1, kPrefixPes}, shot_, places_, std::int32_t(stack_count_),
-               list_end_, std::uint32_t(lists_.size()));
+    acu_.issue(kernel("prefix_sum"), {salvo_, kPrefixPes}, shot_, places_,
+               std::int32_t(stack_count_), list_end_, std::uint32_t(lists_.size() / salvo_));
 }
 
 void ShotPipeline::bin_areas() {
-    acu_.issue(kernel("bin_areas"), stack_grid(), shot_, rectangles_, projection_count_,
+    acu_.issue(kernel("bin_areas"), salvo_stack_grid(), shot_, rectangles_, projection_count_,
                std::int32_t(depth_), places_, lists_);
 }
 
 void ShotPipeline::project_patches() {
-    acu_.issue(kernel("project_patches"), tile_grid(), shot_, roots_, projections_, rectangles_,
-               list_end_, lists_, std::int32_t(escaped_owner()), proxel_count_, covered_count_,
-               owners_, activity_);
+    acu_.issue(kernel("project_patches"), salvo_tile_grid(), shot_, roots_, projections_,
+               rectangles_, list_end_, lists_, std::uint32_t(lists_.size() / salvo_),
+               std::int32_t(escaped_owner()), proxel_count_, covered_count_, owners_, activity_);
 }
 
 void ShotPipeline::estimate_form_factors() {
-    acu_.issue(kernel("estimate_form_factors"), stack_grid(), shot_, corners_, normals_,
+    acu_.issue(kernel("estimate_form_factors"), salvo_stack_grid(), shot_, corners_, normals_,
                std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, owners_,
                proxel_count_, covered_count_, factors_);
 }
 
 void ShotPipeline::correct_near_pairs() {
-    acu_.issue(kernel("correct_near_pairs"), {1, kReducePes}, shot_, near_begin_, near_patch_,
+    acu_.issue(kernel("correct_near_pairs"), {salvo_, kReducePes}, shot_, near_begin_, near_patch_,
                near_factor_, std::int32_t(stride_), factors_);
 }
 
 void ShotPipeline::add_up_factors() {
-    acu_.issue(kernel("add_up_factors"), stack_grid(), shot_, factors_, std::int32_t(stride_),
+    acu_.issue(kernel("add_up_factors"), salvo_stack_grid(), shot_, factors_, std::int32_t(stride_),
                factor_block_sums_);
 }
 
 void ShotPipeline::spread_residual() {
-    acu_.issue(kernel("spread_residual"), {1, kReducePes}, shot_, factor_block_sums_,
+    acu_.issue(kernel("spread_residual"), {salvo_, kReducePes}, shot_, factor_block_sums_,
                std::int32_t(stride_ / kReduceBlock), proxel_count_, std::int32_t(stride_),
                std::int32_t(disk_proxels_));
 }
@@ -407,7 +419,16 @@ void ShotPipeline::choose_shooter() {
                row_escaped_);
 }
 
-device::Shot ShotPipeline::shot() { return acu_.unload(shot_).front(); }
+device::Shot ShotPipeline::shot() {
+    const auto salvo = acu_.unload(shot_);
+    device::Shot shot = salvo.front();
+    for (const device::Shot& member : salvo) {
+        if (member.status != kBinsFull) continue;
+        shot.status = kBinsFull;
+        shot.bin_entries = std::max(shot.bin_entries, member.bin_entries);
+    }
+    return shot;
+}
 
 void ShotPipeline::set_shot(const device::Shot& shot) {
     acu_.load(shot_, std::span<const device::Shot>(&shot, 1));
@@ -425,30 +446,42 @@ void ShotPipeline::set_shooter(std::uint32_t shooter, std::uint32_t part) {
     acu_.load_words<kNextShooterWords>(shot_, next);
 }
 
-void ShotPipeline::set_shot_limit(std::uint64_t shots) {
-    device::Shot next = shot();
-    next.shot_limit = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(shots, std::numeric_limits<std::uint32_t>::max()));
-    if (next.status == kPaused && next.shots < next.shot_limit) next.status = kRunning;
-    set_shot(next);
+void ShotPipeline::set_shot_limit(std::uint64_t shots, std::uint64_t most) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    auto salvo = acu_.unload(shot_);
+    device::Shot& books = salvo.front();
+    books.shot_limit = static_cast<std::uint32_t>(std::min(shots, kMost));
+    books.most_shots = static_cast<std::uint32_t>(std::min(most, kMost));
+    if (books.status == kPaused && books.shots < books.shot_limit)
+        for (device::Shot& shot : salvo) shot.status = kRunning;
+    acu_.load(shot_, std::span<const device::Shot>(salvo));
 }
 
 std::uint32_t ShotPipeline::part_count(std::uint32_t shooter) const {
     return static_cast<std::uint32_t>(samples_[shooter] * samples_[shooter]);
 }
 
+std::uint32_t ShotPipeline::most_parts() const {
+    const auto most = static_cast<std::uint32_t>(*std::ranges::max_element(samples_));
+    return most * most;
+}
+
 void ShotPipeline::enlarge_lists() {
-    device::Shot halted = shot();
-    if (halted.bin_entries > kMostListEntries)
-        throw mp1map::DeviceError("a shot needs lists of " + std::to_string(halted.bin_entries) +
-                                  " patches; at most " + std::to_string(kMostListEntries) +
+    const std::uint32_t entries = shot().bin_entries;
+    const std::size_t most = kMostListEntries / salvo_;
+    if (entries > most)
+        throw mp1map::DeviceError("a shot needs lists of " + std::to_string(entries) +
+                                  " patches; at most " + std::to_string(most) +
                                   " can be addressed: raise --patch-size or lower --resolution");
-    lists_ = acu_.plural<std::int32_t>(
-        std::min<std::size_t>(std::size_t{halted.bin_entries} * 3 / 2, kMostListEntries));
+    lists_ = acu_.plural<std::int32_t>(salvo_ * std::min(std::size_t{entries} * 3 / 2, most));
     clear_counts();
-    halted.status = kRunning;
-    halted.part = 0;
-    set_shot(halted);
+    auto salvo = acu_.unload(shot_);
+    for (device::Shot& shot : salvo) {
+        shot.status = kRunning;
+        shot.part = shot.row_known != 0 ? 1 : 0;
+        shot.is_done = 0;
+    }
+    acu_.load(shot_, std::span<const device::Shot>(salvo));
 }
 
 std::vector<double> ShotPipeline::received() {
@@ -468,7 +501,11 @@ std::vector<double> ShotPipeline::escaped() {
     return result;
 }
 
-std::vector<std::int32_t> ShotPipeline::proxel_counts() { return acu_.unload(proxel_count_); }
+std::vector<std::int32_t> ShotPipeline::proxel_counts() {
+    auto counts = acu_.unload(proxel_count_);
+    counts.resize(stride_ + kSpareCounts);
+    return counts;
+}
 
 void ShotPipeline::clear_counts() {
     acu_.clear(proxel_count_);

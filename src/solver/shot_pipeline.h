@@ -44,6 +44,7 @@ struct PipelineSettings {
     FormFactorMode form_factor = FormFactorMode::count;
     NearPairs near_pairs;  ///< for FormFactorMode::analytic; may be empty
     double tolerance = 1e-3;
+    std::uint32_t salvo = 1;      ///< shooters that look and shoot at once, up to 31
     std::uint64_t row_bytes = 0;  ///< for rows of form factors, which spare a shooter's next shots
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;
@@ -98,13 +99,17 @@ class ShotPipeline {
     void update_radiosity();
     void update_unshot();
 
-    /// Waits; how far the device has come.
+    /// Waits; how far the device has come: the first shooter of the salvo or, of those whose lists
+    /// are full, the one with the longest.
     device::Shot shot();
     void set_shot(const device::Shot& shot);
-    /// The next shooter, instead of the most energetic one; its first hemisphere is `part`.
+    /// The next shooter, instead of the most energetic one; its first hemisphere is `part`. Of
+    /// salvos of one.
     void set_shooter(std::uint32_t shooter, std::uint32_t part = 0);
-    void set_shot_limit(std::uint64_t shots);  ///< goes on after kPaused, up to so many in all
-    /// After kBinsFull: makes room for the lists and lets the halted shot be repeated.
+    /// Goes on after kPaused: until there are so many shots in all, or somewhat more that go at
+    /// once; `most` are never exceeded.
+    void set_shot_limit(std::uint64_t shots, std::uint64_t most);
+    /// After kBinsFull: makes room for the lists and lets the halted salvo be repeated.
     void enlarge_lists();
 
     std::vector<double> received();  ///< [band * stride + patch], of the emitted flux
@@ -127,6 +132,7 @@ class ShotPipeline {
     FormFactorMode mode() const { return mode_; }
     std::uint64_t disk_proxels() const { return disk_proxels_; }  ///< of one hemisphere
     std::uint32_t part_count(std::uint32_t shooter) const;        ///< its hemispheres
+    std::uint32_t most_parts() const;                             ///< of any shooter
     const mp1map::PeArray& pe_array() const { return array_; }
     std::uint32_t stride() const { return stride_; }
     std::uint32_t shooter_stride() const { return shooter_stride_; }
@@ -143,15 +149,18 @@ class ShotPipeline {
     void load_near_pairs(const NearPairs& pairs);
     template <class T>
     std::vector<T> projected(const mp1map::Plural<T>& plural);  // what is set up of [pe][slot]
-    mp1map::Grid stack_grid() const;
-    mp1map::Grid tile_grid() const;
+    // Those that shoot and those that look ahead, as MEMBERS in progress.clh.
+    std::uint32_t member_count() const { return salvo_ == 1 ? 1 : 2 * salvo_; }
+    mp1map::Grid stack_grid() const;  // one array's stacks
+    mp1map::Grid salvo_stack_grid() const;
+    mp1map::Grid salvo_tile_grid() const;
 
     mp1map::PeArray array_;
     mp1map::Acu acu_;
     std::map<std::string, mp1map::Kernel> kernels_;
     double build_seconds_ = 0;
 
-    std::uint32_t resolution_, stride_, shooter_stride_;
+    std::uint32_t resolution_, stride_, shooter_stride_, salvo_;
     std::size_t band_count_;
     std::uint32_t tile_count_, stack_count_, depth_, row_capacity_;
     std::uint64_t disk_proxels_;
@@ -196,6 +205,7 @@ std::uint64_t disk_proxel_count(std::uint32_t resolution);
 std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shooters,
                                      std::uint32_t corner_count, std::size_t bands,
                                      std::uint32_t resolution, FormFactorMode mode,
-                                     std::uint64_t row_bytes, const mp1map::PeArray& array);
+                                     std::uint64_t row_bytes, const mp1map::PeArray& array,
+                                     std::uint32_t salvo = 1);
 
 }  // namespace hemirad

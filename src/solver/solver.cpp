@@ -14,6 +14,8 @@ constexpr std::uint64_t kMostRepeats = 64;
 constexpr std::uint64_t kDefaultRowBytes = std::uint64_t{1} << 30;
 // Where fewer have a row, the rows spare next to nothing and cost more than all patches do.
 constexpr std::uint64_t kMostShootersPerRow = 100;
+constexpr std::uint32_t kSalvo = 8;
+constexpr std::uint64_t kLeastShootersForSalvo = 1024, kMostPatchesForSalvo = 1u << 18;
 // The device counts them in 32 bits.
 constexpr std::uint64_t kMostShots = std::numeric_limits<std::uint32_t>::max();
 
@@ -77,6 +79,7 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
     result.form_factor = settings.form_factor;
     set_shooter_sampling(result, mesh, settings);
     result.tolerance = settings.tolerance;
+    result.salvo = usable_salvo(settings.salvo, mesh.shooter_count(), mesh.patches.size());
     result.row_bytes =
         usable_row_bytes(settings.row_bytes, mesh.shooter_count(), mesh.patches.size(), device);
     result.pe_array = settings.pe_array;
@@ -105,6 +108,11 @@ std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::
     return wanted || worthwhile ? bytes : 0;
 }
 
+std::uint32_t usable_salvo(std::uint32_t wanted, std::uint64_t shooters, std::uint64_t patches) {
+    if (wanted != 0) return std::min(wanted, kMostSalvo);
+    return shooters >= kLeastShootersForSalvo && patches <= kMostPatchesForSalvo ? kSalvo : 1;
+}
+
 ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& settings,
                                      const mp1map::Device& device)
     : mesh_(mesh),
@@ -112,7 +120,8 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
       plan_(plan_bands(mesh)),
       pipeline_(pipeline_for(mesh, plan_, settings, device)) {
     pipeline_.init_plane();
-    // A shot at nothing: adds up the emitted flux and finds the first shooter.
+    pipeline_.set_shot_limit(settings.max_shots, settings.max_shots);
+    // A shot at nothing: adds up the emitted flux and finds the first shooters.
     distribute_flux(pipeline_);
 }
 
@@ -158,13 +167,13 @@ void shoot(ShotPipeline& pipeline) {
 // What the device finds nothing to do for does nothing: passes once it is done, repeats for a
 // shooter whose row is not known. Twice as many repeats as the passes before met follow each.
 Progress ProgressiveSolver::advance(std::uint64_t passes) {
-    const std::uint64_t repeated_before = pipeline_.shot().repeated_shots;
+    const std::uint64_t repeated_before = pipeline_.shot().repeated_salvos;
     for (std::uint64_t pass = 0; pass < passes; ++pass) {
         shoot(pipeline_);
         for (std::uint64_t repeat = 0; repeat < repeats_; ++repeat) distribute_flux(pipeline_);
     }
     device::Shot state = pipeline_.shot();
-    const std::uint64_t repeated = state.repeated_shots - repeated_before;
+    const std::uint64_t repeated = state.repeated_salvos - repeated_before;
     repeats_ = std::min(kMostRepeats, (2 * repeated + passes - 1) / passes);
     if (state.status == kBinsFull) {
         pipeline_.enlarge_lists();
@@ -178,6 +187,10 @@ std::uint64_t ProgressiveSolver::next_pause(std::uint64_t shots) const {
     return std::min(settings_.max_shots, (shots / settings_.stop_every + 1) * settings_.stop_every);
 }
 
+std::uint64_t ProgressiveSolver::passes_to(std::uint64_t shots) const {
+    return std::min(shots, kMostPassesBetweenLooks) * pipeline_.most_parts();
+}
+
 Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_progress) {
     const auto start = std::chrono::steady_clock::now();
     std::uint64_t batch = 1;
@@ -186,12 +199,14 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
         if (state.status == kConverged || state.status == kExhausted) return Stop::converged;
         if (state.shots >= std::min<std::uint64_t>(settings_.max_shots, kMostShots))
             return Stop::max_shots;
-        pipeline_.set_shot_limit(next_pause(state.shots));
+        const std::uint64_t pause = next_pause(state.shots);
+        pipeline_.set_shot_limit(pause, settings_.max_shots);
 
         const double before = seconds_since(start);
-        Progress progress = advance(batch);
+        const std::uint64_t passes = std::min(batch, passes_to(pause - state.shots));
+        Progress progress = advance(passes);
         progress.seconds = seconds_since(start);
-        const double per_pass = (progress.seconds - before) / static_cast<double>(batch);
+        const double per_pass = (progress.seconds - before) / static_cast<double>(passes);
         batch = std::clamp<std::uint64_t>(
             static_cast<std::uint64_t>(kSecondsBetweenLooks / std::max(per_pass, 1e-9)), 1,
             std::min(2 * batch, kMostPassesBetweenLooks));

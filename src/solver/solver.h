@@ -29,12 +29,13 @@ struct SolverSettings {
     double tolerance = 1e-3;  ///< stop where unshot / emitted is below, in every band
     std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
     double time_limit = std::numeric_limits<double>::infinity();  ///< s
-    /// Calls back whenever the shots reach a multiple of this, besides a few times a second; 0:
-    /// not.
+    /// Calls back whenever the shots reach a multiple of this, or as soon as those that go at once
+    /// allow, besides a few times a second; 0: not.
     std::uint64_t stop_every = 0;
     /// For rows of form factors, see usable_row_bytes(): a shooter whose row is kept need not look
     /// again.
     std::optional<std::uint64_t> row_bytes = {};
+    std::uint32_t salvo = 0;  ///< see usable_salvo()
     mp1map::PeArrayRequest pe_array = {};
     Variants variants = {};
     std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
@@ -46,6 +47,13 @@ struct SolverSettings {
 /// hundred: a large mesh takes what its patches take.
 std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,
                                std::uint64_t patches, const mp1map::DeviceSummary& device);
+
+/// Shooters that look and shoot at once: as many as wanted, at most kMostSalvo; 0: by the mesh,
+/// alone a property of which it is, so that bits do not depend on the device. 8 cost a thousandth
+/// more shots, and 100 bytes a patch each. Where there are fewer than 1,024 shooters time does not
+/// matter and the loop is the paper's, one at a time; beyond 262,144 patches memory does.
+std::uint32_t usable_salvo(std::uint32_t wanted, std::uint64_t shooters, std::uint64_t patches);
+constexpr std::uint32_t kMostSalvo = 15;
 
 struct Progress {
     std::uint64_t shots = 0;
@@ -103,6 +111,7 @@ class ProgressiveSolver {
   private:
     Progress advance(std::uint64_t passes);
     std::uint64_t next_pause(std::uint64_t shots) const;
+    std::uint64_t passes_to(std::uint64_t shots) const;  // that make so many for certain
 
     const Mesh& mesh_;
     SolverSettings settings_;

@@ -16,10 +16,13 @@ constexpr std::uint32_t kParts = 4;
 struct Books {
     std::size_t bands = 1;
     device::Shot shot{};
+    std::uint32_t salvo = 1;
+    std::vector<device::Shot> others;  // of the salvo, and those that look ahead
     std::vector<device::BlockSummary> summaries;
     std::vector<float> block_unshot;  // [block][band]
     std::vector<float> unshot;        // [band][patch]
-    std::vector<float> weight, flux;  // [band]
+    std::vector<float> weight;        // [band]
+    std::vector<float> flux;          // [shooter][band]
     std::vector<float> escaped;       // [sum, rest][band]
     std::int32_t escaped_count = 0, owned_count = 0;
     std::int32_t row_capacity = 0;
@@ -67,12 +70,19 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         KernelOptions options;
         options.bands = static_cast<std::uint32_t>(books.bands);
         options.reduce_pes = GetParam();
+        options.salvo = books.salvo;
         KernelRun run("choose_shooter", options);
-        auto shot = run.plural(std::vector{books.shot});
-        std::vector<std::int32_t> counts(books.stride() + kSpareCounts, 0);
-        counts[books.stride()] = books.escaped_count;
-        counts[books.stride() + 1] = 5;  // outside the disk
-        counts[books.stride() + 2] = books.owned_count;
+        std::vector<device::Shot> salvo{books.shot};
+        salvo.insert(salvo.end(), books.others.begin(), books.others.end());
+        auto shot = run.plural(salvo);
+        std::vector<std::int32_t> counts(books.salvo * (books.stride() + kCountsGap), 0);
+        for (std::size_t station = 0; station < books.salvo; ++station) {
+            auto* const spare =
+                counts.data() + station * (books.stride() + kCountsGap) + books.stride();
+            spare[0] = books.escaped_count;
+            spare[1] = 5;  // outside the disk
+            spare[2] = books.owned_count;
+        }
         auto proxel_count = run.plural(counts);
         auto escaped = run.plural(books.escaped), flux = run.plural(books.flux);
         auto row_of = run.plural(books.row_of);
@@ -83,7 +93,9 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
                   books.tolerance, kDiskProxels, proxel_count, std::int32_t(books.stride()),
                   escaped, flux, books.row_capacity, row_of, row_escaped);
         Books result = books;
-        result.shot = run.acu().unload(shot).front();
+        salvo = run.acu().unload(shot);
+        result.shot = salvo.front();
+        result.others.assign(salvo.begin() + 1, salvo.end());
         result.escaped = run.acu().unload(escaped);
         result.flux = run.acu().unload(flux);
         result.row_of = run.acu().unload(row_of);
@@ -261,6 +273,178 @@ TEST_P(ChooseShooter, NothingIsClosedBeforeTheShootersLastHemisphere) {
     EXPECT_EQ(after.shot.shooter, books.shot.shooter);
     EXPECT_EQ(after.shot.part, kParts - 1);
     EXPECT_EQ(counts_[books.stride()], 40);
+}
+
+// Whose most energetic shooters of 12 blocks are, from the first block on: 1, 0.96, 0.92, ...
+Books salvo_books(std::uint32_t salvo) {
+    auto books = random_books(12, 2);
+    books.salvo = salvo;
+    books.shot.part = books.shot.part_count;
+    books.shot.most_shots = std::numeric_limits<std::uint32_t>::max();
+    books.row_capacity = 100;
+    books.shot.row = 0;
+    books.row_escaped.assign(200, 0.0f);
+    books.flux.assign(salvo * books.bands, 0.0f);
+    device::Shot none{};
+    none.shooter = -1;
+    none.status = kRunning;
+    none.row_known = none.part = none.part_count = 1;
+    books.others.assign(2 * salvo - 1, none);
+    for (std::size_t block = 0; block < books.summaries.size(); ++block)
+        books.summaries[block].energy = 1 - 0.04f * static_cast<float>(block);
+    return books;
+}
+
+std::int32_t shooter_of(std::size_t block) {
+    return static_cast<std::int32_t>(block * kReduceBlock + 32);
+}
+
+std::vector<std::int32_t> shooters_of(const Books& books) {
+    std::vector<std::int32_t> result{books.shot.shooter};
+    for (const auto& shot : books.others)
+        if (shot.shooter >= 0 && shot.is_ahead == 0) result.push_back(shot.shooter);
+    return result;
+}
+
+std::vector<std::int32_t> looking_ahead(const Books& books) {
+    std::vector<std::int32_t> result;
+    for (const auto& shot : books.others)
+        if (shot.shooter >= 0 && shot.is_ahead != 0) result.push_back(shot.shooter);
+    return result;
+}
+
+TEST_P(ChooseShooter, ASalvoIsTheMostEnergeticShootersOfDifferentBlocks) {
+    auto books = salvo_books(3);
+    std::swap(books.summaries[1].energy, books.summaries[9].energy);
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(shooters_of(after), (std::vector{shooter_of(0), shooter_of(9), shooter_of(2)}));
+    for (std::size_t band = 0; band < 2; ++band)
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_EQ(after.flux[i * 2 + band],
+                      books.unshot[band * books.stride() + std::size_t(shooters_of(after)[i])]);
+}
+
+TEST_P(ChooseShooter, CrumbsAreLeftToGrow) {
+    auto books = salvo_books(3);
+    books.summaries[1].energy = 0.5f;
+    for (std::size_t block = 2; block < 12; ++block) books.summaries[block].energy = 0.2f;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(shooters_of(after), (std::vector{shooter_of(0), shooter_of(1)}));
+    EXPECT_TRUE(looking_ahead(after).empty());
+    for (std::size_t member = 1; member < after.others.size(); ++member)
+        EXPECT_GE(after.others[member].part, after.others[member].part_count);
+}
+
+// Two of three have looked, so that two of three stations are free.
+TEST_P(ChooseShooter, WhereOneHasToLookOthersLookAhead) {
+    auto books = salvo_books(3);
+    books.shot.rows_kept = 2;
+    books.shot.row_known = 1;
+    books.row_of[std::size_t(shooter_of(0))] = 1;
+    books.row_of[std::size_t(shooter_of(2))] = 2;
+    books.row_of[std::size_t(shooter_of(3))] = 7;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(shooters_of(after), (std::vector{shooter_of(0), shooter_of(1), shooter_of(2)}));
+    EXPECT_EQ(looking_ahead(after), (std::vector{shooter_of(4), shooter_of(5)}));
+    EXPECT_EQ(after.others[0].row, 2);
+    EXPECT_EQ(after.others[2].row, 3);
+    EXPECT_EQ(after.others[3].row, 4);
+    for (const auto& shot : {after.others[0], after.others[2], after.others[3]})
+        EXPECT_LT(shot.part, shot.part_count);
+}
+
+TEST_P(ChooseShooter, NobodyLooksAheadWhereAllThatShootHaveLooked) {
+    auto books = salvo_books(3);
+    books.shot.row_known = 1;
+    for (std::size_t block = 0; block < 3; ++block)
+        books.row_of[std::size_t(shooter_of(block))] = std::int32_t(block) + 1;
+
+    EXPECT_TRUE(looking_ahead(closed(books)).empty());
+}
+
+TEST_P(ChooseShooter, NobodyLooksAheadForARowThatIsNotKept) {
+    auto books = salvo_books(3);
+    books.row_capacity = 3;
+    books.shot.row_known = 1;
+    books.shot.rows_kept = 1;
+    books.row_of[std::size_t(shooter_of(0))] = 1;
+
+    const auto one = closed(books);
+    books.row_of[std::size_t(shooter_of(1))] = 2;
+    books.shot.rows_kept = 2;
+    const auto other = closed(books);
+
+    EXPECT_TRUE(looking_ahead(one).empty());
+    EXPECT_TRUE(looking_ahead(other).empty());
+    EXPECT_EQ(other.others[1].row, 2);
+}
+
+TEST_P(ChooseShooter, RowsThatAreNotKeptLieApart) {
+    auto books = salvo_books(3);
+    books.row_capacity = 0;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.row, 0);
+    EXPECT_EQ(after.others[0].row, 1);
+    EXPECT_EQ(after.others[1].row, 2);
+}
+
+TEST_P(ChooseShooter, TheBooksOfAllThatShotAreClosed) {
+    auto books = salvo_books(3);
+    books.escaped_count = 40;
+    books.owned_count = 300;
+    books.flux = {0.5f, 0.25f, 0.125f, 1, 0, 0};
+    books.row_escaped[5] = 0.5f;
+    books.others[0].shooter = 70;  // known, and shoots
+    books.others[0].row = 5;
+    books.others[1] = books.shot;  // looks ahead
+    books.others[1].shooter = 140;
+    books.others[1].is_ahead = 1;
+    books.others[1].row = 1;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.shots, books.shot.shots + 2);
+    EXPECT_EQ(after.shot.repeated_shots, 1u);
+    EXPECT_EQ(after.shot.repeated_salvos, 0u);
+    EXPECT_EQ(after.shot.rows_kept, 2u);
+    EXPECT_EQ(after.row_of[3], 1);
+    EXPECT_EQ(after.row_of[140], 2);
+    EXPECT_EQ(after.row_of[70], 0);
+    EXPECT_EQ(after.shot.least_surplus, 340 - 1000);
+    const double part = 40.0f / (kDiskProxels * kParts);
+    EXPECT_NEAR(double{after.escaped[0]} + after.escaped[2], 0.5 * part + 0.125 * 0.5, 1e-7);
+    EXPECT_NEAR(double{after.escaped[1]} + after.escaped[3], 0.25 * part + 0.5, 1e-7);
+    const std::size_t spare = books.stride() + kCountsGap;
+    EXPECT_EQ(counts_[books.stride()], 0);
+    EXPECT_EQ(counts_[spare + books.stride()], 0);
+    EXPECT_EQ(counts_[2 * spare + books.stride()], 40);  // a station that nobody had
+}
+
+TEST_P(ChooseShooter, ASalvoIsOfNoMoreThanAreAllowed) {
+    auto books = salvo_books(3);
+    books.shot.most_shots = books.shot.shots + 3;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(shooters_of(after), (std::vector{shooter_of(0), shooter_of(1)}));
+}
+
+TEST_P(ChooseShooter, OneThatHaltsHaltsItsSalvo) {
+    auto books = salvo_books(3);
+    books.others[2].status = kBinsFull;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.shots, books.shot.shots);
+    EXPECT_EQ(after.shot.shooter, books.shot.shooter);
 }
 
 TEST_P(ChooseShooter, ItPausesAtTheLimitOfShots) {

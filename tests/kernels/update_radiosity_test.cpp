@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "support/kernel_run.h"
@@ -118,6 +119,57 @@ TEST_P(UpdateRadiosity, AKnownRowIsTakenAsItIs) {
     state.row_known = 1;
 
     expect_equal(updated(state, GetParam()), expected_state(state));
+}
+
+// One by a known row, one that has looked, and one that looked ahead: it keeps its row and sends
+// nothing. Whoever has looked has counts, one behind the other.
+TEST_P(UpdateRadiosity, OfASalvoEachSendsItsFluxByItsRow) {
+    constexpr std::size_t kCounts = kStride + kCountsGap;
+    const auto state = random_state(1);
+    KernelOptions options;
+    options.lanes = GetParam().lanes;
+    options.salvo = 2;
+    KernelRun run("update_radiosity", options);
+    std::vector<device::Shot> salvo(4);
+    for (auto& shot : salvo) {
+        shot.status = kRunning;
+        shot.part = shot.part_count = 1;
+    }
+    salvo[0].row = 3;
+    salvo[0].row_known = 1;
+    salvo[1].row = 0;
+    salvo[2].row = 1;
+    salvo[2].is_ahead = 1;
+    salvo[3].shooter = -1;
+    std::vector<std::int32_t> counts(2 * kCounts);
+    std::copy_n(state.counts.begin(), kStride, counts.begin());
+    std::copy_n(state.counts.rbegin() + kSpareCounts, kStride, counts.begin() + kCounts);
+    const std::vector<float> flux{0.5f, 0.3f, 0, 0};
+    auto on_device = run.plural(counts);
+    auto received = run.plural(state.received), rest = run.plural(state.rest);
+    auto rows = run.plural(state.rows);
+
+    run.issue({2, std::size_t{GetParam().width} * GetParam().height}, run.plural(salvo),
+              run.plural(flux), on_device, state.disk_proxels, run.acu().plural<float>(1),
+              std::int32_t(kStride), rows, received, rest);
+
+    const auto after = run.acu().unload(rows);
+    const auto sums = run.acu().unload(received), rests = run.acu().unload(rest);
+    const auto counted = run.acu().unload(on_device);
+    const auto disk = static_cast<float>(state.disk_proxels);
+    for (std::size_t patch = 0; patch < kStride; ++patch) {
+        const auto first = static_cast<float>(counts[patch]) / disk;
+        EXPECT_EQ(after[patch], first);
+        EXPECT_EQ(after[kStride + patch], static_cast<float>(counts[kCounts + patch]) / disk);
+        const float sent = std::fma(first, flux[1], state.rows[3 * kStride + patch] * flux[0]);
+        // Two-sum is exact but for the increment's rounding.
+        EXPECT_EQ(double{sums[patch]} + rests[patch],
+                  double{state.received[patch]} + (sent + state.rest[patch]));
+        EXPECT_EQ(counted[patch], 0);
+        EXPECT_EQ(counted[kCounts + patch], 0);
+    }
+    EXPECT_GT(counted[kStride + 2], 0);
+    EXPECT_GT(counted[kCounts + kStride + 2], 0);
 }
 
 TEST_P(UpdateRadiosity, AHaltedShotChangesNothing) {

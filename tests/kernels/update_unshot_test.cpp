@@ -163,6 +163,45 @@ TEST_P(UpdateUnshot, AShooterReflectsWhatItsElementsReceived) {
     expect_equal(updated(state, GetParam()), expected_outcome(state));
 }
 
+// Two of one block and one of another shoot, and keep what the others send them; one looks ahead.
+TEST_P(UpdateUnshot, OfASalvoEachHasShotWhatItHad) {
+    constexpr std::array<std::size_t, 4> kMembers{77, 80, 200, 90};
+    const auto state = random_state(1);
+    KernelOptions options;
+    options.lanes = GetParam().lanes;
+    options.salvo = 4;
+    KernelRun run("update_unshot", options);
+    std::vector<device::Shot> salvo(8);
+    for (std::size_t member = 0; member < salvo.size(); ++member) {
+        salvo[member].status = kRunning;
+        salvo[member].part = salvo[member].part_count = 1;
+        salvo[member].shooter = member < 4 ? std::int32_t(kMembers[member]) : -1;
+        salvo[member].row = member < 2 ? std::int32_t(member) : 0;
+    }
+    salvo[3].is_ahead = 1;
+    const std::vector<float> flux{0.5f, 0.25f, 0.125f, 9, 0, 0, 0, 0};
+    auto unshot = run.plural(state.unshot);
+    auto summaries = run.acu().plural<device::BlockSummary>(kShooters / kReduceBlock);
+    auto block_unshot = run.acu().plural<float>(kShooters / kReduceBlock);
+
+    run.issue({2, std::size_t{GetParam().width} * GetParam().height}, run.plural(salvo),
+              run.plural(flux), run.plural(state.rows), std::int32_t(kStride),
+              run.plural(state.first_patch), std::int32_t(kShooters), unshot,
+              run.plural(state.reflectance), run.plural(state.weight), summaries, block_unshot);
+
+    const auto left = run.acu().unload(unshot);
+    for (std::size_t shooter = 0; shooter < kShooters; ++shooter) {
+        double sent = 0;
+        for (std::size_t member = 0; member < 3; ++member)
+            sent += double{flux[member]} *
+                    state.rows[std::size_t(salvo[member].row) * kStride + shooter];
+        const bool has_shot = shooter == 77 || shooter == 80 || shooter == 200;
+        EXPECT_NEAR(left[shooter],
+                    (has_shot ? 0 : state.unshot[shooter]) + state.reflectance[shooter] * sent,
+                    2e-7);
+    }
+}
+
 TEST_P(UpdateUnshot, EquallyEnergeticPatchesLeaveTheChoiceToTheLowest) {
     auto state = random_state(1);
     state.shooter = -1;
