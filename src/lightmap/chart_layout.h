@@ -21,6 +21,7 @@ struct ChartSettings {
 /// its front: s to the right, t upwards, the top row being the largest t.
 struct Chart {
     std::uint32_t surface = 0;
+    std::uint32_t atlas = 0;
     std::uint32_t x = 0, y = 0;           ///< top left texel
     std::uint32_t width = 1, height = 1;  ///< texels
     glm::dvec2 texel_size{1.0};  ///< m; at most the layout's, so that whole texels fill the grid

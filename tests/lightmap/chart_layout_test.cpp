@@ -102,7 +102,7 @@ TEST(ChartLayout, SurfacesWithoutAChartAreLeftOut) {
 
 TEST(ChartLayout, ChartShowsTheSurfaceAsSeenFromItsFront) {
     const Mesh mesh = rectangle(4, 2);
-    const Chart chart{0, 10, 20, 8, 4, {0.5, 0.5}};
+    const Chart chart{0, 0, 10, 20, 8, 4, {0.5, 0.5}};
 
     EXPECT_EQ(atlas_from_world(chart, mesh.surfaces[0], {0, 0, 0}), glm::dvec2(10, 24));
     EXPECT_EQ(atlas_from_world(chart, mesh.surfaces[0], {4, 2, 0}), glm::dvec2(18, 20));
