@@ -147,14 +147,13 @@ class Mesher {
             grids.elements.push_back(halve_cells(scene_, elements, level));
         for (std::uint32_t level = 0; level < settings_.split_levels; ++level)
             grids.split_shooters.push_back(shooters_in(grids));
-        if (contacts_) grids.contacts = contacts_on(group, grids.patches);
+        if (contacts_) {
+            const auto index = static_cast<std::uint32_t>(&group - groups_.data());
+            const Sides sides = back_of(group) == Back::mirror ? Sides::both : Sides::front;
+            grids.contacts = contacts_->on(index, grids.patches, sides);
+            grids.elements.back().walls = contacts_->walls_on(index, grids.patches, sides);
+        }
         return grids;
-    }
-
-    std::vector<Contact> contacts_on(const Group& group, const Surface& grid) {
-        const bool is_mirrored = back_of(group) == Back::mirror;
-        return contacts_->on(static_cast<std::uint32_t>(&group - groups_.data()), grid,
-                             is_mirrored ? Sides::both : Sides::front);
     }
 
     /// The next of its grids of shooters.
