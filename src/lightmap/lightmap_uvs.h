@@ -23,7 +23,8 @@ struct UvTriangle {
     std::array<glm::dvec2, 3> uvs{};
 };
 
-/// In the order of the faces, each one's fronts before its backs. Every face that was not dropped
+/// In the order of the faces, each one's fronts before its backs. Of faces with UVs of their own
+/// (ChartSource::authored) these come back, and no backs. Every face that was not dropped
 /// has triangles that cover it; all of a face and side lie in one atlas and, where it is planar, in
 /// one chart, so that a corner has the same UV in each of them.
 std::vector<UvTriangle> lightmap_uvs(const Scene& scene, const Mesh& mesh,

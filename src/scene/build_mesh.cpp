@@ -67,8 +67,7 @@ class Mesher {
         groups_ = std::isinf(settings_.patch_size)
                       ? group_singly(faces_)
                       : group_coplanar(scene_, faces_, edges, vertices_.positions(), precision_);
-        if (!std::isinf(settings_.patch_size))
-            contacts_.emplace(faces_, edges, groups_, vertices_.positions(), precision_);
+        contacts_.emplace(faces_, edges, groups_, vertices_.positions(), precision_);
         add_fronts();
         add_backs();
         look_for_contacts_left();
@@ -147,12 +146,11 @@ class Mesher {
             grids.elements.push_back(halve_cells(scene_, elements, level));
         for (std::uint32_t level = 0; level < settings_.split_levels; ++level)
             grids.split_shooters.push_back(shooters_in(grids));
-        if (contacts_) {
-            const auto index = static_cast<std::uint32_t>(&group - groups_.data());
-            const Sides sides = back_of(group) == Back::mirror ? Sides::both : Sides::front;
+        const auto index = static_cast<std::uint32_t>(&group - groups_.data());
+        const Sides sides = back_of(group) == Back::mirror ? Sides::both : Sides::front;
+        if (!std::isinf(settings_.patch_size))
             grids.contacts = contacts_->on(index, grids.patches, sides);
-            grids.elements.back().walls = contacts_->walls_on(index, grids.patches, sides);
-        }
+        grids.elements.back().walls = contacts_->walls_on(index, grids.patches, sides);
         return grids;
     }
 
@@ -274,7 +272,7 @@ class Mesher {
     }
 
     void look_for_contacts_left() {
-        if (contacts_ && !contacts_->complete())
+        if (!contacts_->complete())
             mesh_.warnings.push_back(scene_.file +
                                      ": too many faces touch to cut all along one another");
     }
@@ -361,7 +359,7 @@ class Mesher {
     FlatFaces faces_;
     Parts parts_;
     std::vector<Group> groups_;
-    std::optional<ContactFinder> contacts_;   ///< none where patches are polygons of the input
+    std::optional<ContactFinder> contacts_;   ///< as soon as there are groups
     std::vector<const Group*> front_groups_;  ///< of each front surface
     Mesh mesh_;
 };

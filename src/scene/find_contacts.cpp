@@ -61,7 +61,8 @@ ContactFinder::ContactFinder(const FlatFaces& faces, std::span<const Edge> edges
       group_of_flat_(groups_of_flats(groups, faces.flats.size())),
       outlines_(outline_edges(edges, group_of_flat_)),
       tree_(vertices, segments_of(outlines_)),
-      looks_left_(kFewestLooks + kLooksAnEdge * double(outlines_.size())) {}
+      looks_left_(kFewestLooks + kLooksAnEdge * double(outlines_.size())),
+      wall_looks_left_(looks_left_) {}
 
 std::vector<Contact> ContactFinder::on(std::uint32_t group, const Surface& surface, Sides sides) {
     const Frame frame{surface.origin, surface.u_axis, surface.v_axis, surface.normal};
@@ -80,13 +81,15 @@ std::vector<Contact> ContactFinder::on(std::uint32_t group, const Surface& surfa
 }
 
 std::vector<Wall> ContactFinder::walls_on(std::uint32_t group, const Surface& surface,
-                                          Sides sides) const {
+                                          Sides sides) {
+    if (wall_looks_left_ <= 0) return {};
     const Frame frame{surface.origin, surface.u_axis, surface.v_axis, surface.normal};
     const Slab slab{frame, surface.cell_size * glm::dvec2(surface.columns, surface.rows),
                     precision_};
     std::vector<Wall> walls;
     for (const std::uint32_t found : tree_.in(slab)) {
         const Shared& edge = outlines_[found];
+        wall_looks_left_ -= double(edge.size());
         if (std::ranges::any_of(edge, [&](const Edge& side) {
                 return group_of_flat_[side.owner] != group && stands_up(side.owner, surface, sides);
             }))
