@@ -33,7 +33,8 @@ class FootprintBuilder {
         for (const auto& [x, y, area] : areas_) {
             Footprint& texel = footprints_.at(x, y);
             texel.coverage += area;
-            const auto weighted = static_cast<float>(weight * area);
+            const bool has_centre = area < 1 && holds(polygon, {x + 0.5, y + 0.5});
+            const auto weighted = static_cast<float>(weight * (has_centre ? 1 + area : area));
             if (weighted <= texel.largest) continue;
             texel.largest = weighted;
             texel.patch = patch;

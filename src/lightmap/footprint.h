@@ -20,8 +20,9 @@ struct PlaceMap {
     }
 };
 
-/// What part of a texel surfaces fill, and whose light it shows: that of the patch that fills the
-/// most, not counting hidden ones where there is another.
+/// What part of a texel surfaces fill, and whose light it shows: that of the patch at its centre,
+/// or where there is none of the one that fills the most; of a hidden one only where there is no
+/// other.
 struct Footprint {
     double coverage = 0.0;
     float largest = 0.0f;

@@ -60,6 +60,17 @@ double area_of(const TexelPolygon& polygon) {
     return std::abs(twice) / 2.0;
 }
 
+bool holds(const TexelPolygon& polygon, const glm::dvec2& point) {
+    bool left = false, right = false;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const glm::dvec2& from = polygon.corners[i];
+        const double turn = cross(polygon.corners[(i + 1) % polygon.count] - from, point - from);
+        left = left || turn > 0;
+        right = right || turn < 0;
+    }
+    return !(left && right);
+}
+
 TexelPolygon clip_to_triangle(TexelPolygon polygon, const std::array<glm::dvec2, 3>& triangle) {
     const double turn = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]) < 0 ? -1 : 1;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -23,6 +23,8 @@ struct TexelPolygon {
 
 double area_of(const TexelPolygon& polygon);
 
+bool holds(const TexelPolygon& polygon, const glm::dvec2& point);
+
 /// The part of the polygon that lies in a triangle, whichever way round that goes.
 TexelPolygon clip_to_triangle(TexelPolygon polygon, const std::array<glm::dvec2, 3>& triangle);
 

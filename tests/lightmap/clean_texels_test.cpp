@@ -126,6 +126,19 @@ TEST(CleanTexels, ADarkRoomThatIsShutIsNotTakenForABlock) {
     expect_floor(bake(scene, 0.4, light, 0.1), light);
 }
 
+TEST(CleanTexels, ATexelAtTheCornerOfARoomIsOnTheSideOfItsCentre) {
+    Scene scene = floor_of(0, 0, 4, 4);
+    add_wall(scene, 1.55, 0, 1.55);
+    const Quad other{{0, 1.55, 0}, {1.55, 1.55, 0}, {1.55, 1.55, 1}, {0, 1.55, 1}};
+    add_face(scene, other, 0, 1);
+    add_face(scene, reversed(other), 0, 1);
+    const Light light = [](const glm::dvec3& at) { return at.x < 1.55 && at.y < 1.55 ? 0.0 : 8.0; };
+
+    expect_floor(bake(scene, 0.5, light, 0.25), light);
+    expect_floor(bake(scene, 0.5, light, 0.4), light);
+    expect_floor(bake(scene, 1.0, light, 0.6), light);
+}
+
 Scene two_tiles(double split, double left_width, double right_width) {
     Scene scene = floor_of(split - left_width, 0, split, 2);
     add_face(scene, rectangle(split, 0, split + right_width, 2), 0, 2);
