@@ -31,7 +31,8 @@ set(public_headers
     formfactor/form_factors.h
     solver/bands.h solver/near_pairs.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h solver/solver.h
     solver/view_factors.h
-    lightmap/atomic_file.h lightmap/chart_layout.h lightmap/lightmap.h lightmap/rasterize.h
+    lightmap/atomic_file.h lightmap/chart_layout.h lightmap/lightmap.h
+    lightmap/lightmap_uvs.h lightmap/rasterize.h
     lightmap/write_exr.h lightmap/write_faces.h lightmap/write_preview.h)
 foreach(header IN LISTS public_headers)
     cmake_path(GET header PARENT_PATH folder)

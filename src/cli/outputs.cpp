@@ -6,6 +6,7 @@
 
 #include "cli/text.h"
 #include "errors.h"
+#include "lightmap/atlas_file.h"
 #include "lightmap/atomic_file.h"
 #include "lightmap/rasterize.h"
 #include "lightmap/write_exr.h"
@@ -62,18 +63,22 @@ std::vector<Attribute> attributes_of(const SolveOptions& options, const Solution
     return attributes;
 }
 
-void write_lightmap(const SolveOptions& options, const Lightmap& lightmap,
+void write_lightmap(const SolveOptions& options, std::uint32_t atlas, const Lightmap& lightmap,
                     const std::vector<Attribute>& attributes) {
-    check_finite(options.output, lightmap);
-    write_exr(options.output, lightmap, attributes, options.pixels);
-    if (options.preview) write_preview(*options.preview, lightmap);
+    const fs::path file = atlas_file(options.output, atlas);
+    check_finite(file, lightmap);
+    write_exr(file, lightmap, attributes, options.pixels);
+    if (options.preview) write_preview(atlas_file(*options.preview, atlas), lightmap);
 }
 
 }  // namespace
 
 std::vector<fs::path> output_files(const SolveOptions& options) {
-    std::vector<fs::path> files{options.output};
-    if (options.preview) files.push_back(*options.preview);
+    std::vector<fs::path> files;
+    for (std::uint32_t atlas = 0; atlas < options.atlas_count; ++atlas) {
+        files.push_back(atlas_file(options.output, atlas));
+        if (options.preview) files.push_back(atlas_file(*options.preview, atlas));
+    }
     if (options.faces) files.push_back(*options.faces);
     return files;
 }
@@ -107,18 +112,23 @@ void check_outputs(const SolveOptions& options) {
 
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error) {
-    auto lightmap = rasterize(mesh, solution, layout, options.quantity);
-    if (error != nullptr)
-        lightmap.layers["error"] = rasterize(mesh, *error, layout, options.quantity).values;
-    write_lightmap(options, lightmap, attributes_of(options, solution));
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas) {
+        auto lightmap = rasterize(mesh, solution, layout, options.quantity, atlas);
+        if (error != nullptr)
+            lightmap.layers["error"] =
+                rasterize(mesh, *error, layout, options.quantity, atlas).values;
+        write_lightmap(options, atlas, lightmap, attributes_of(options, solution));
+    }
 }
 
 void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                            const Solution& solution) {
     auto attributes = attributes_of(options, solution);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
-    write_lightmap(options, rasterize(mesh, with_ambient(mesh, solution), layout, options.quantity),
-                   attributes);
+    const Solution ambient = with_ambient(mesh, solution);
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
+        write_lightmap(options, atlas, rasterize(mesh, ambient, layout, options.quantity, atlas),
+                       attributes);
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

@@ -43,8 +43,11 @@ Work prepare(SolveOptions& options) {
     work.scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(work.scene);
     work.mesh = build_mesh(work.scene, options.mesh);
-    work.layout = lay_out_charts(work.mesh, {.texel_size = options.texel_size});
-    options.texel_size = work.layout.texel_size;
+    work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
+    for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);
+    options.charts.texel_size = work.layout.texel_size;
+    options.atlas_count = static_cast<std::uint32_t>(work.layout.atlases.size());
+    if (options.atlas_count > 1) check_outputs(options);
     return work;
 }
 

@@ -9,6 +9,7 @@
 namespace hemirad {
 namespace {
 
+const std::vector<std::string_view> kChartSources{"authored", "generated"};
 const std::vector<std::string_view> kQuantities{"irradiance", "radiosity"};
 const std::vector<std::string_view> kQualities{"draft", "medium", "high", "ultra"};
 const std::vector<std::string_view> kFormFactorModes{"count", "analytic"};
@@ -52,8 +53,31 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     add_mesh_options(command, options.mesh);
     add_element_size(command, options.mesh);
     add_split(command, options.mesh);
-    add_value(command, {"--texel-size", "METRES", "edge of a texel [half the smallest element]"},
-              [&](const OptionValue& value) { options.texel_size = positive_number(value); });
+}
+
+void add_chart_options(CLI::App& command, ChartSettings& charts) {
+    add_value(command, {"--texel-size", "METRES", "edge of a texel [half the median cell's]"},
+              [&](const OptionValue& value) { charts.texel_size = positive_number(value); });
+    add_value(command,
+              {"--atlas-size", "N",
+               "longest side of a lightmap, texels; more are written where one is not enough "
+               "[16384]"},
+              [&](const OptionValue& value) {
+                  charts.atlas_size =
+                      static_cast<std::uint32_t>(whole_number(value, 1, kLargestAtlas));
+              });
+    add_value(command, {"--padding", "N", "gutter around every chart, texels [4]"},
+              [&](const OptionValue& value) {
+                  charts.padding = static_cast<std::uint32_t>(whole_number(value, 0, 256));
+              });
+    add_value(command,
+              {"--charts", "authored|generated",
+               "the scene's TEXCOORD_1 where it has one, or new ones throughout [authored]"},
+              [&](const OptionValue& value) {
+                  charts.source = static_cast<ChartSource>(one_of(value, kChartSources));
+              });
+    command.add_flag("--flip-v", charts.flip_v,
+                     "V runs up from the lightmap's bottom row, not down from its top [off]");
 }
 
 void add_stop_options(CLI::App& command, SolverSettings& solver) {
@@ -151,6 +175,7 @@ void add_talk_options(CLI::App& command, SolveOptions& options) {
 void add_solve_options(CLI::App& command, SolveOptions& options) {
     add_file_options(command, options);
     add_accuracy_options(command, options);
+    add_chart_options(command, options.charts);
     add_stop_options(command, options.solver);
     add_picture_options(command, options);
     add_machine_options(command, options);
@@ -232,7 +257,8 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         {"--form-factor", name_of(solver.form_factor)},
         {"--sampling-error", number_text(solver.sampling_error)},
         {"--patch-size", number_text(options.mesh.patch_size)},
-        {"--texel-size", number_text(options.texel_size)},
+        {"--texel-size", number_text(options.charts.texel_size)},
+        {"--padding", std::to_string(options.charts.padding)},
         {"--backfaces", name_of(options.mesh.backfaces)},
         {"--max-reflectance", number_text(options.mesh.max_reflectance)},
         {"--tolerance", number_text(solver.tolerance)},
@@ -241,6 +267,11 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         result.emplace_back("--element-size", number_text(options.mesh.element_size));
     if (options.mesh.split_levels > 0)
         result.emplace_back("--split", std::to_string(options.mesh.split_levels));
+    if (options.charts.atlas_size > 0)
+        result.emplace_back("--atlas-size", std::to_string(options.charts.atlas_size));
+    if (options.charts.source == ChartSource::generated)
+        result.emplace_back("--charts", "generated");
+    if (options.charts.flip_v) result.emplace_back("--flip-v", "");
     if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (options.target_error)
         result.emplace_back("--target-error", number_text(*options.target_error));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "lightmap/chart_layout.h"
 #include "lightmap/lightmap.h"
 #include "lightmap/write_exr.h"
 #include "scene/mesh.h"
@@ -31,7 +32,8 @@ struct SolveOptions {
     Quality quality = Quality::medium;
     std::optional<double> target_error;  ///< relative RMS of the patches' irradiance
     bool estimate_error = false;
-    double texel_size = 0;  ///< m; 0: default_texel_size()
+    ChartSettings charts;
+    std::uint32_t atlas_count = 1;  ///< as the layout of the scene's charts turns out
     Quantity quantity = Quantity::irradiance;
     PixelType pixels = PixelType::float32;
     std::string device;  ///< as mp1map::Device::open takes it

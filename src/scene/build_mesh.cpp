@@ -67,8 +67,7 @@ class Mesher {
         groups_ = std::isinf(settings_.patch_size)
                       ? group_singly(faces_)
                       : group_coplanar(scene_, faces_, edges, vertices_.positions(), precision_);
-        if (!std::isinf(settings_.patch_size))
-            contacts_.emplace(faces_, edges, groups_, vertices_.positions(), precision_);
+        contacts_.emplace(faces_, edges, groups_, vertices_.positions(), precision_);
         add_fronts();
         add_backs();
         look_for_contacts_left();
@@ -119,13 +118,12 @@ class Mesher {
     }
 
     void flatten_faces() {
-        std::vector<std::uint32_t> vertex_of_position;
-        vertex_of_position.reserve(scene_.positions.size());
+        vertex_of_position_.reserve(scene_.positions.size());
         for (const auto& position : scene_.positions) {
-            vertex_of_position.push_back(vertices_.add(position));
-            if (vertices_[vertex_of_position.back()] != position) ++mesh_.input.welded;
+            vertex_of_position_.push_back(vertices_.add(position));
+            if (vertices_[vertex_of_position_.back()] != position) ++mesh_.input.welded;
         }
-        const Outlines outlines = outline_faces(scene_.faces, vertex_of_position);
+        const Outlines outlines = outline_faces(scene_.faces, vertex_of_position_);
         mesh_.input.moved = move_onto_edges(outlines, precision_, vertices_);
         faces_ = flatten(scene_, outlines, vertices_.positions(), precision_);
         if (faces_.flats.empty()) throw InputError(scene_.file + ": no face has an area");
@@ -148,14 +146,12 @@ class Mesher {
             grids.elements.push_back(halve_cells(scene_, elements, level));
         for (std::uint32_t level = 0; level < settings_.split_levels; ++level)
             grids.split_shooters.push_back(shooters_in(grids));
-        if (contacts_) grids.contacts = contacts_on(group, grids.patches);
+        const auto index = static_cast<std::uint32_t>(&group - groups_.data());
+        const Sides sides = back_of(group) == Back::mirror ? Sides::both : Sides::front;
+        if (!std::isinf(settings_.patch_size))
+            grids.contacts = contacts_->on(index, grids.patches, sides);
+        grids.elements.back().walls = contacts_->walls_on(index, grids.patches, sides);
         return grids;
-    }
-
-    std::vector<Contact> contacts_on(const Group& group, const Surface& grid) {
-        const bool is_mirrored = back_of(group) == Back::mirror;
-        return contacts_->on(static_cast<std::uint32_t>(&group - groups_.data()), grid,
-                             is_mirrored ? Sides::both : Sides::front);
     }
 
     /// The next of its grids of shooters.
@@ -190,14 +186,35 @@ class Mesher {
             grids.depths = elements;
             grids.shooter_depths = shooters;
             append(cut(group, std::move(grids)), mesh_);
-            if (mesh_.surfaces.size() > index) front_groups_.push_back(&group);
+            if (mesh_.surfaces.size() == index) continue;
+            front_groups_.push_back(&group);
+            for (const std::uint32_t flat : group)
+                add_triangles(faces_.flats[flat], static_cast<std::uint32_t>(index));
         }
+        std::ranges::stable_sort(mesh_.face_triangles, {}, &FaceTriangle::face);
+    }
+
+    void add_triangles(const Flat& flat, std::uint32_t surface) {
+        for (const auto piece : faces_.pieces(flat))
+            for (std::size_t i = 1; i + 1 < piece.size(); ++i)
+                mesh_.face_triangles.push_back(
+                    {flat.face,
+                     surface,
+                     {corner_at(flat.face, piece[0]), corner_at(flat.face, piece[i]),
+                      corner_at(flat.face, piece[i + 1])}});
+    }
+
+    std::uint32_t corner_at(std::uint32_t face, std::uint32_t vertex) const {
+        const auto& corners = scene_.faces[face].vertices;
+        const auto corner = std::ranges::find(
+            corners, vertex, [&](std::uint32_t position) { return vertex_of_position_[position]; });
+        return static_cast<std::uint32_t>(corner - corners.begin());
     }
 
     void add_backs() {
         for (std::uint32_t front = 0; front < front_groups_.size(); ++front) {
             const Group& group = *front_groups_[front];
-            const std::size_t before = mesh_.shooters.size();
+            const std::size_t before = mesh_.shooters.size(), surfaces = mesh_.surfaces.size();
             switch (back_of(group)) {
                 case Back::none:
                     continue;
@@ -208,6 +225,8 @@ class Mesher {
                     append(mirror_behind(group), mesh_);
                     break;
             }
+            if (mesh_.surfaces.size() > surfaces)
+                mesh_.surfaces[front].reverse = static_cast<std::uint32_t>(surfaces);
             Part& part = parts_.parts[parts_.part_of_flat[group.front()]];
             part.back_patches += static_cast<std::uint32_t>(mesh_.shooters.size() - before);
         }
@@ -253,7 +272,7 @@ class Mesher {
     }
 
     void look_for_contacts_left() {
-        if (contacts_ && !contacts_->complete())
+        if (!contacts_->complete())
             mesh_.warnings.push_back(scene_.file +
                                      ": too many faces touch to cut all along one another");
     }
@@ -336,10 +355,11 @@ class Mesher {
     std::vector<SplitDepths> depths_;  ///< of each surface, or none
     Precision precision_;
     VertexWelder vertices_;
+    std::vector<std::uint32_t> vertex_of_position_;
     FlatFaces faces_;
     Parts parts_;
     std::vector<Group> groups_;
-    std::optional<ContactFinder> contacts_;   ///< none where patches are polygons of the input
+    std::optional<ContactFinder> contacts_;   ///< as soon as there are groups
     std::vector<const Group*> front_groups_;  ///< of each front surface
     Mesh mesh_;
 };

@@ -80,8 +80,7 @@ class SurfaceCutter {
     }
 
     CutSurface take() {
-        if (!marks_.empty())
-            cut_.surface.side_of_patch = find_sides(pieces_, cut_.surface, marks_);
+        if (!marks_.empty()) cut_.surface.side_of_patch = find_sides(pieces_, cut_.surface, marks_);
         return std::move(cut_);
     }
 
@@ -234,6 +233,11 @@ CutSurface turn_over(CutSurface cut) {
     surface.origin += surface.columns * surface.cell_size.x * surface.u_axis;
     surface.u_axis = -surface.u_axis;
     surface.normal = -surface.normal;
+    const double width = surface.columns * surface.cell_size.x;
+    for (auto& [from, to] : surface.walls) {
+        from.x = width - from.x;
+        to.x = width - to.x;
+    }
     for (std::uint32_t i = 0; i < surface.cell_of_patch.size(); ++i) {
         std::uint32_t& cell = surface.cell_of_patch[i];
         cell += surface.columns - (1u << surface.scale(i)) - 2 * (cell % surface.columns);

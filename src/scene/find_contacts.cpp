@@ -61,7 +61,8 @@ ContactFinder::ContactFinder(const FlatFaces& faces, std::span<const Edge> edges
       group_of_flat_(groups_of_flats(groups, faces.flats.size())),
       outlines_(outline_edges(edges, group_of_flat_)),
       tree_(vertices, segments_of(outlines_)),
-      looks_left_(kFewestLooks + kLooksAnEdge * double(outlines_.size())) {}
+      looks_left_(kFewestLooks + kLooksAnEdge * double(outlines_.size())),
+      wall_looks_left_(looks_left_) {}
 
 std::vector<Contact> ContactFinder::on(std::uint32_t group, const Surface& surface, Sides sides) {
     const Frame frame{surface.origin, surface.u_axis, surface.v_axis, surface.normal};
@@ -79,6 +80,25 @@ std::vector<Contact> ContactFinder::on(std::uint32_t group, const Surface& surfa
     return contacts;
 }
 
+std::vector<Wall> ContactFinder::walls_on(std::uint32_t group, const Surface& surface,
+                                          Sides sides) {
+    if (wall_looks_left_ <= 0) return {};
+    const Frame frame{surface.origin, surface.u_axis, surface.v_axis, surface.normal};
+    const Slab slab{frame, surface.cell_size * glm::dvec2(surface.columns, surface.rows),
+                    precision_};
+    std::vector<Wall> walls;
+    for (const std::uint32_t found : tree_.in(slab)) {
+        const Shared& edge = outlines_[found];
+        wall_looks_left_ -= double(edge.size());
+        if (std::ranges::any_of(edge, [&](const Edge& side) {
+                return group_of_flat_[side.owner] != group && stands_up(side.owner, surface, sides);
+            }))
+            walls.push_back({frame.project(vertices_[edge[0].low()]),
+                             frame.project(vertices_[edge[0].high()])});
+    }
+    return walls;
+}
+
 bool ContactFinder::ends_on(Shared edge, std::uint32_t group, const Surface& surface,
                             Sides sides) const {
     if (is_outline_of(group, edge, group_of_flat_)) return false;
@@ -89,14 +109,24 @@ bool ContactFinder::ends_on(Shared edge, std::uint32_t group, const Surface& sur
     });
 }
 
-bool ContactFinder::reaches(std::uint32_t flat, const Surface& surface, Sides sides) const {
-    double low = 0, high = 0;
+ContactFinder::Heights ContactFinder::heights(std::uint32_t flat, const Surface& surface) const {
+    Heights heights;
     for (const std::uint32_t v : faces_.outline(faces_.flats[flat])) {
         const double height = glm::dot(vertices_[v] - surface.origin, surface.normal);
-        low = std::min(low, height);
-        high = std::max(high, height);
+        heights.low = std::min(heights.low, height);
+        heights.high = std::max(heights.high, height);
     }
+    return heights;
+}
+
+bool ContactFinder::reaches(std::uint32_t flat, const Surface& surface, Sides sides) const {
+    const auto [low, high] = heights(flat, surface);
     return high > precision_ || low >= -precision_ || sides == Sides::both;
+}
+
+bool ContactFinder::stands_up(std::uint32_t flat, const Surface& surface, Sides sides) const {
+    const auto [low, high] = heights(flat, surface);
+    return high > precision_ || (low < -precision_ && sides == Sides::both);
 }
 
 }  // namespace hemirad::meshing

@@ -31,6 +31,12 @@ struct Shooter {
 };
 
 inline constexpr std::uint32_t kOwnPlane = 0xffffffffu;
+inline constexpr std::uint32_t kNoReverse = 0xffffffffu;
+
+/// A line on a surface, in metres along its axes (s, t), on which others stand.
+struct Wall {
+    glm::dvec2 from, to;
+};
 
 /// Coplanar, connected faces of one object and one material, cut into a regular grid: of elements,
 /// where shooters have several.
@@ -41,6 +47,7 @@ struct Surface {
     std::uint32_t material = 0;  ///< index into Mesh::materials
     bool is_back = false;        ///< the reverse of an open sheet or of a double-sided material
     bool has_chart = true;       ///< false for backs that only block and absorb
+    std::uint32_t reverse = kNoReverse;  ///< of a front, the surface that is its back
     /// Surfaces of the same number lie in one plane, either way up, and see nothing of each other;
     /// kOwnPlane: no other does.
     std::uint32_t plane = kOwnPlane;
@@ -58,6 +65,8 @@ struct Surface {
     /// Where other surfaces stand on it: patches near each other of which one is under what stands
     /// there and one beside it, or which it parts, have different sides. Empty: one side.
     std::vector<std::uint8_t> side_of_patch;
+    /// Where other surfaces stand on it, on its outline, too: light may differ across.
+    std::vector<Wall> walls;
 
     std::uint32_t scale(std::uint32_t i) const {
         return scale_of_patch.empty() ? 0 : scale_of_patch[i];
@@ -73,6 +82,14 @@ struct Fragment {
     std::uint32_t face;
     std::uint32_t patch;
     double area;  ///< m^2
+};
+
+/// A triangle of an input face and the front surface that it lies in. A face that is not planar may
+/// lie in several.
+struct FaceTriangle {
+    std::uint32_t face;
+    std::uint32_t surface;
+    std::array<std::uint32_t, 3> corners;  ///< which of Face::vertices; counter-clockwise
 };
 
 /// Connected faces (over shared edges), as `info` lists them.
@@ -104,6 +121,7 @@ struct Mesh {
     std::vector<Surface> surfaces;
     std::vector<Material> materials;  ///< the scene's, reflectance limited, then one black absorber
     std::vector<Fragment> fragments;  ///< of fronts only, sorted by face, then patch
+    std::vector<FaceTriangle> face_triangles;  ///< of fronts, by face; none of dropped faces
     std::vector<Part> parts;
     std::vector<std::string> bands;
     std::vector<std::string> objects;

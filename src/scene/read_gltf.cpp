@@ -267,19 +267,44 @@ struct PlacedPrimitive {
     bool mirrored;
 };
 
+/// TEXCOORD_1 of each vertex: by a habit of exporters where it lies in a lightmap. None where the
+/// primitive has none.
+std::vector<glm::dvec2> read_lightmap_uvs(const Builder& builder,
+                                          const PlacedPrimitive& primitive) {
+    const auto attribute = primitive.source.attributes.find("TEXCOORD_1");
+    if (attribute == primitive.source.attributes.end()) return {};
+    const std::vector<double> values = read_accessor(builder.gltf, attribute->second, 2);
+    if (values.size() != 2 * primitive.vertices.count) {
+        fail(builder.gltf.file, primitive.path,
+             "has " + std::to_string(values.size() / 2) + " TEXCOORD_1 for " +
+                 std::to_string(primitive.vertices.count) + " positions");
+    }
+    std::vector<glm::dvec2> uvs;
+    for (std::size_t i = 0; i < values.size(); i += 2) {
+        uvs.emplace_back(values[i], values[i + 1]);
+        if (std::isfinite(values[i] + values[i + 1])) continue;
+        fail(builder.gltf.file, primitive.path,
+             "TEXCOORD_1 " + std::to_string(i / 2) + " is not finite");
+    }
+    return uvs;
+}
+
 void add_faces(Builder& builder, const PlacedPrimitive& primitive) {
     const int mode = primitive.source.mode;
     const auto sequence =
         corner_sequence(builder, primitive.path, primitive.source, primitive.vertices.count);
     const std::size_t count = triangle_count(builder, primitive.path, mode, sequence.size());
     const std::uint32_t material = count > 0 ? material_index(builder, primitive.source) : 0;
+    const auto uvs = read_lightmap_uvs(builder, primitive);
     for (std::size_t i = 0; i < count; ++i) {
         Face face{{}, material, primitive.object};
-        for (const std::size_t corner : triangle_corners(mode, i)) {
+        Triangle corners = triangle_corners(mode, i);
+        if (primitive.mirrored) std::swap(corners[1], corners[2]);
+        for (const std::size_t corner : corners) {
             face.vertices.push_back(
                 static_cast<std::uint32_t>(primitive.vertices.first + sequence[corner]));
+            if (!uvs.empty()) face.lightmap_uvs.push_back(uvs[sequence[corner]]);
         }
-        if (primitive.mirrored) std::swap(face.vertices[1], face.vertices[2]);
         builder.scene.faces.push_back(std::move(face));
     }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ struct Face {
     std::vector<std::uint32_t> vertices;  ///< three or more indices into Scene::positions
     std::uint32_t material = 0;
     std::uint32_t object = 0;
+    /// Of each corner, where the file says where it lies in a lightmap (glTF's TEXCOORD_1): V runs
+    /// down from the top. Empty where it does not.
+    std::vector<glm::dvec2> lightmap_uvs = {};
 };
 
 /// What a file says, in world space and metres, nothing repaired yet.

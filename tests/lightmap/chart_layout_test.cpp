@@ -24,15 +24,15 @@ bool same_place(const Chart& a, const Chart& b) {
 TEST(ChartLayout, ChartsWithTheirPaddingDoNotOverlap) {
     const auto layout = lay_out_charts(mesh_of_many_sizes(), {.texel_size = 0.5, .padding = 3});
 
-    std::vector<int> owner_count(std::size_t{layout.width} * layout.height);
+    std::vector<int> owner_count(std::size_t{layout.atlases[0].width} * layout.atlases[0].height);
     for (const Chart& chart : layout.charts) {
         ASSERT_GE(chart.x, 3u);
         ASSERT_GE(chart.y, 3u);
-        ASSERT_LE(chart.x + chart.width + 3, layout.width);
-        ASSERT_LE(chart.y + chart.height + 3, layout.height);
+        ASSERT_LE(chart.x + chart.width + 3, layout.atlases[0].width);
+        ASSERT_LE(chart.y + chart.height + 3, layout.atlases[0].height);
         for (auto y = chart.y - 3; y < chart.y + chart.height + 3; ++y) {
             for (auto x = chart.x - 3; x < chart.x + chart.width + 3; ++x) {
-                ++owner_count[std::size_t{y} * layout.width + x];
+                ++owner_count[std::size_t{y} * layout.atlases[0].width + x];
             }
         }
     }
@@ -40,12 +40,12 @@ TEST(ChartLayout, ChartsWithTheirPaddingDoNotOverlap) {
 }
 
 TEST(ChartLayout, AtlasIsNearlySquareAndNearlyFull) {
-    const auto layout = lay_out_charts(mesh_of_many_sizes(), {.texel_size = 0.25});
+    const auto layout = lay_out_charts(mesh_of_many_sizes(), {.texel_size = 0.25, .padding = 2});
 
     double area = 0;
     for (const Chart& chart : layout.charts) area += (chart.width + 4.0) * (chart.height + 4.0);
-    EXPECT_NEAR(double(layout.height) / layout.width, 1.0, 0.06);
-    EXPECT_GT(area / (double(layout.width) * layout.height), 0.85);
+    EXPECT_NEAR(double(layout.atlases[0].height) / layout.atlases[0].width, 1.0, 0.06);
+    EXPECT_GT(area / (double(layout.atlases[0].width) * layout.atlases[0].height), 0.85);
 }
 
 TEST(ChartLayout, SameMeshGivesSameLayout) {
@@ -102,7 +102,7 @@ TEST(ChartLayout, SurfacesWithoutAChartAreLeftOut) {
 
 TEST(ChartLayout, ChartShowsTheSurfaceAsSeenFromItsFront) {
     const Mesh mesh = rectangle(4, 2);
-    const Chart chart{0, 10, 20, 8, 4, {0.5, 0.5}};
+    const Chart chart{0, 0, 10, 20, 8, 4, {0.5, 0.5}};
 
     EXPECT_EQ(atlas_from_world(chart, mesh.surfaces[0], {0, 0, 0}), glm::dvec2(10, 24));
     EXPECT_EQ(atlas_from_world(chart, mesh.surfaces[0], {4, 2, 0}), glm::dvec2(18, 20));
@@ -115,8 +115,8 @@ TEST(ChartLayout, TooSmallATexelIsRefusedWithASizeThatWorks) {
         message_of<InputError>([&] { lay_out_charts(mesh, {.texel_size = 0.001}); });
 
     EXPECT_EQ(message,
-              "--texel-size 0.001: the lightmap would exceed 16384 texels a side; "
-              "try --texel-size 0.00617");
+              "--texel-size 0.001: the chart of a surface takes 1e+05 x 1e+05 texels, an atlas of "
+              "16384 has room for 1.64e+04 a side; try --texel-size 0.00617");
     EXPECT_NO_THROW(lay_out_charts(mesh, {.texel_size = 0.00617}));
 }
 
@@ -125,6 +125,39 @@ TEST(ChartLayout, ManyChartsThatExceedTheAtlasTogetherAreRefused) {
     for (int i = 0; i < 10; ++i) add_surface(mesh, 1, 1, {100, 100});
 
     EXPECT_THROW(lay_out_charts(mesh, {.texel_size = 0.01}), InputError);
+}
+
+TEST(ChartLayout, ChartsThatOneAtlasDoesNotHoldFillSeveral) {
+    const auto layout =
+        lay_out_charts(mesh_of_many_sizes(), {.texel_size = 0.5, .padding = 3, .atlas_size = 64});
+
+    ASSERT_GT(layout.atlases.size(), 2u);
+    std::vector<std::vector<int>> owner_count;
+    for (const Atlas& atlas : layout.atlases) {
+        EXPECT_LE(std::max(atlas.width, atlas.height), 64u);
+        owner_count.emplace_back(std::size_t{atlas.width} * atlas.height);
+    }
+    for (const Chart& chart : layout.charts)
+        for (auto y = chart.y - 3; y < chart.y + chart.height + 3; ++y)
+            for (auto x = chart.x - 3; x < chart.x + chart.width + 3; ++x) {
+                ASSERT_LT(x, layout.atlases[chart.atlas].width);
+                ASSERT_LT(y, layout.atlases[chart.atlas].height);
+                EXPECT_EQ(++owner_count[chart.atlas][y * layout.atlases[chart.atlas].width + x], 1);
+            }
+}
+
+TEST(ChartLayout, AChartThatIsLargerThanTheAtlasIsRefusedByName) {
+    Mesh mesh = rectangle(8, 8);
+    mesh.objects = {"hall"};
+
+    const auto message = message_of<InputError>(
+        [&] { lay_out_charts(mesh, {.texel_size = 0.1, .padding = 2, .atlas_size = 64}); });
+
+    EXPECT_EQ(
+        message,
+        "--texel-size 0.1: the chart of \"hall\" takes 80 x 80 texels, an atlas of 64 has room "
+        "for 60 a side; try --texel-size 0.135");
+    EXPECT_NO_THROW(lay_out_charts(mesh, {.texel_size = 0.135, .padding = 2, .atlas_size = 64}));
 }
 
 TEST(ChartLayout, TexelSizeMustBeAPositiveNumber) {

@@ -20,7 +20,7 @@ Mesh notched_mesh() {
 }
 
 Lightmap rasterized(const Mesh& mesh, const Solution& solution, double texel_size) {
-    return rasterize(mesh, solution, lay_out_charts(mesh, {.texel_size = texel_size}),
+    return rasterize(mesh, solution, lay_out_charts(mesh, {.texel_size = texel_size, .padding = 2}),
                      Quantity::irradiance);
 }
 
@@ -35,7 +35,7 @@ TEST(Rasterize, AConstantSolutionGivesExactlyConstantTexelsAndGutters) {
 
     const auto lightmap = rasterized(mesh, constant_solution(mesh, 0.7), 0.06);
 
-    const auto layout = lay_out_charts(mesh, {.texel_size = 0.06});
+    const auto layout = lay_out_charts(mesh, {.texel_size = 0.06, .padding = 2});
     const Chart& chart = layout.charts[0];
     for (std::size_t i = 0; i < lightmap.texel_count(); ++i) {
         if (lightmap.coverage[i] == 0.0f) continue;
@@ -108,7 +108,7 @@ TEST(Rasterize, TexelsTakeTheLightOfTheirOwnSideOfABlock) {
     const Mesh mesh = half_covered_mesh();
     const auto lightmap = rasterized(mesh, solution_of({0, 0, 8, 8, 8}), 0.125);
 
-    const Chart chart = lay_out_charts(mesh, {.texel_size = 0.125}).charts[0];
+    const Chart chart = lay_out_charts(mesh, {.texel_size = 0.125, .padding = 2}).charts[0];
     for (std::uint32_t x = 0; x < 32; ++x)
         EXPECT_EQ(lightmap.values[0][texel_at(lightmap, chart.x + x, chart.y + 3)],
                   x < 12 ? 0.0f : 8.0f)
@@ -120,7 +120,7 @@ TEST(Rasterize, ATexelOnTheOutlineOfABlockTakesTheSideOfItsLargerPart) {
     const auto lightmap = rasterized(mesh, solution_of({0, 0, 8, 8, 8}), 0.4);
 
     // Of the texel from 1.2 to 1.6 m three quarters are covered.
-    const Chart chart = lay_out_charts(mesh, {.texel_size = 0.4}).charts[0];
+    const Chart chart = lay_out_charts(mesh, {.texel_size = 0.4, .padding = 2}).charts[0];
     EXPECT_EQ(lightmap.values[0][texel_at(lightmap, chart.x + 3, chart.y)], 0.0f);
     EXPECT_EQ(lightmap.values[0][texel_at(lightmap, chart.x + 4, chart.y)], 8.0f);
 }
@@ -170,7 +170,7 @@ TEST(Rasterize, CoverageAddsUpToTheAreaForAnyTexelSize) {
     const Mesh mesh = notched_mesh();
 
     for (const double texel_size : {0.07, 0.3, 0.51, 1.7, 5.0}) {
-        const auto layout = lay_out_charts(mesh, {.texel_size = texel_size});
+        const auto layout = lay_out_charts(mesh, {.texel_size = texel_size, .padding = 2});
         const auto lightmap =
             rasterize(mesh, constant_solution(mesh, 1.0), layout, Quantity::irradiance);
         const glm::dvec2 texel = layout.charts[0].texel_size;
@@ -201,7 +201,7 @@ TEST(Rasterize, AGutterTexelCopiesTheNearestCoveredOneOfItsChart) {
 
 TEST(Rasterize, TheQuantityIsTheOneAskedFor) {
     const Mesh mesh = rectangle(1, 1);
-    const auto layout = lay_out_charts(mesh, {.texel_size = 1.0});
+    const auto layout = lay_out_charts(mesh, {.texel_size = 1.0, .padding = 2});
 
     const auto lightmap =
         rasterize(mesh, constant_solution(mesh, 3.0), layout, Quantity::radiosity);

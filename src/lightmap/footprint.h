@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "lightmap/chart_layout.h"
+#include "lightmap/pack_rectangles.h"
+#include "lightmap/patch_lookup.h"
+#include "scene/mesh.h"
+
+namespace hemirad {
+
+/// The place (s, t in metres) on a surface of a point in its atlas, in texels.
+struct PlaceMap {
+    glm::dvec2 origin{}, per_x{}, per_y{};
+
+    glm::dvec2 place_of(const glm::dvec2& texel) const {
+        return origin + texel.x * per_x + texel.y * per_y;
+    }
+};
+
+/// What part of a texel surfaces fill, and whose light it shows: that of the patch at its centre,
+/// or where there is none of the one that fills the most; of a hidden one only where there is no
+/// other.
+struct Footprint {
+    double coverage = 0.0;
+    float largest = 0.0f;
+    std::uint32_t patch = kNoPatch;
+    std::uint32_t map = 0;
+};
+
+/// Of a part of an atlas, row by row.
+struct Footprints {
+    Rectangle within;
+    std::vector<Footprint> texels;
+    std::vector<PlaceMap> maps;
+
+    Footprint& at(std::uint32_t x, std::uint32_t y) {
+        return texels[std::size_t{y - within.y} * within.width + (x - within.x)];
+    }
+};
+
+/// Of a chart and its gutter. Texels of the gutter, and those that show hidden patches, show what
+/// the nearest other shows: these wherever one is, those up to the padding away.
+Footprints chart_footprints(const Mesh& mesh, const ChartLayout& layout, const Chart& chart,
+                            const std::vector<bool>& hidden);
+
+/// Of all triangles that the scene's UVs put into the atlas, likewise.
+Footprints authored_footprints(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
+                               const std::vector<bool>& hidden);
+
+}  // namespace hemirad

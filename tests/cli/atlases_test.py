@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Charts of the scene's own, several atlases, and what is said of those that do not fit."""
+import base64
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+
+import scenes
+
+HEMIRAD = os.environ["HEMIRAD"]
+QUICK = ("--resolution", "64", "--patch-size", "0.25", "-q")
+
+SQUARE = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+UPRIGHT = ((0, 1), (1, 1), (1, 0), (0, 0))
+
+
+def size_of(path):
+    """Width and height by the EXR's dataWindow."""
+    head = path.read_bytes()
+    at = head.index(b"dataWindow\0box2i\0") + len(b"dataWindow\0box2i\0") + 4
+    left, top, right, bottom = struct.unpack_from("<4i", head, at)
+    return right - left + 1, bottom - top + 1
+
+
+def gltf(uvs, nodes=({"mesh": 0, "name": "sheet"},)):
+    """A square lamp with TEXCOORD_1."""
+    parts = [b"".join(struct.pack("<3f", *p) for p in SQUARE),
+             b"".join(struct.pack("<2f", *uv) for uv in uvs),
+             struct.pack("<6I", 0, 1, 2, 0, 2, 3)]
+    views, offset = [], 0
+    for part in parts:
+        views.append({"buffer": 0, "byteOffset": offset, "byteLength": len(part)})
+        offset += len(part)
+    document = json.loads(scenes.gltf())
+    document["nodes"] = list(nodes)
+    document["scenes"] = [{"nodes": list(range(len(nodes)))}]
+    document["bufferViews"] = views
+    document["buffers"] = [{"byteLength": offset, "uri": "data:application/octet-stream;base64,"
+                            + base64.b64encode(b"".join(parts)).decode()}]
+    document["accessors"] = [
+        {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0],
+         "max": [1, 1, 0]},
+        {"bufferView": 1, "componentType": 5126, "count": len(uvs), "type": "VEC2"},
+        {"bufferView": 2, "componentType": 5125, "count": 6, "type": "SCALAR"}]
+    document["meshes"] = [{"primitives": [
+        {"attributes": {"POSITION": 0, "TEXCOORD_1": 1}, "indices": 2, "material": 0}]}]
+    return json.dumps(document)
+
+
+class Atlases(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
+        (self.folder / "scene.obj").write_bytes(scenes.obj())
+
+    def solve(self, *arguments, scene="scene.obj"):
+        return subprocess.run([HEMIRAD, "solve", scene, *QUICK, *arguments], cwd=self.folder,
+                              text=True, capture_output=True, timeout=120, check=False)
+
+    def solve_gltf(self, *arguments, **content):
+        (self.folder / "sheet.gltf").write_text(gltf(**content), encoding="utf-8")
+        return self.solve(*arguments, scene="sheet.gltf")
+
+    def written(self):
+        return sorted(p.name for p in self.folder.iterdir() if p.suffix in (".exr", ".png"))
+
+    def test_charts_that_one_does_not_hold_go_to_a_second(self):
+        result = self.solve("-o", "out.exr", "--preview", "out.png", "--report", "r.json",
+                            "--texel-size", "0.1", "--padding", "3", "--atlas-size", "16")
+
+        self.assertEqual((0, ""), (result.returncode, result.stderr))
+        self.assertEqual(["out.1.exr", "out.1.png", "out.exr", "out.png"], self.written())
+        self.assertEqual((16, 16), size_of(self.folder / "out.1.exr"))
+        report = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(["out.exr", "out.png", "out.1.exr", "out.1.png"],
+                         [output["file"] for output in report["outputs"]])
+
+    def test_a_second_atlas_does_not_overwrite_another_output(self):
+        (self.folder / "out.1.exr").mkdir()
+
+        result = self.solve("-o", "out.exr", "--texel-size", "0.1", "--atlas-size", "24")
+
+        self.assertEqual(3, result.returncode, result.stderr)
+        self.assertIn("out.1.exr", result.stderr)
+        self.assertEqual(["out.1.exr"], self.written())
+
+    def test_a_chart_larger_than_the_atlas_is_refused_by_name(self):
+        result = self.solve("--texel-size", "0.01", "--atlas-size", "64")
+
+        self.assertEqual(1, result.returncode)
+        self.assertIn('the chart of "floor" takes 100 x 100 texels', result.stderr)
+        self.assertEqual(1, result.stderr.count("\n"))
+        self.assertEqual([], self.written())
+
+    def test_the_scenes_own_uvs_fill_the_atlas_that_was_asked_for(self):
+        result = self.solve_gltf("-o", "out.exr", "--atlas-size", "32", uvs=UPRIGHT)
+
+        self.assertEqual((0, ""), (result.returncode, result.stderr))
+        self.assertEqual((32, 32), size_of(self.folder / "out.exr"))
+
+    def test_the_scenes_own_uvs_are_ignored_on_request(self):
+        result = self.solve_gltf("-o", "out.exr", "--texel-size", "0.1", "--charts", "generated",
+                                 "--padding", "1", "--backfaces", "cull", uvs=UPRIGHT)
+
+        self.assertEqual((0, ""), (result.returncode, result.stderr))
+        self.assertEqual((12, 12), size_of(self.folder / "out.exr"))
+
+    def test_two_instances_get_an_atlas_each(self):
+        result = self.solve_gltf("-o", "out.exr", "--atlas-size", "32", uvs=UPRIGHT, nodes=[
+            {"mesh": 0, "name": "left"}, {"mesh": 0, "name": "right", "translation": [2, 0, 0]}])
+
+        self.assertEqual(0, result.returncode)
+        self.assertIn('"right": its TEXCOORD_1 claim texels of "left"', result.stderr)
+        self.assertEqual(["out.1.exr", "out.exr"], self.written())
+
+    def test_uvs_that_make_no_lightmap_are_refused_by_the_nodes_name(self):
+        for uvs, says in [(((0, 1), (2, 1), (2, 0), (0, 0)), "outside of 0 to 1"),
+                          (((0, 1), (1, 1), (1, 0), (1, 1)), "overlap in TEXCOORD_1"),
+                          (UPRIGHT[:3], "has 3 TEXCOORD_1 for 4 positions")]:
+            result = self.solve_gltf(uvs=uvs)
+
+            self.assertEqual(1, result.returncode, result.stderr)
+            self.assertIn(says, result.stderr)
+            self.assertIn("meshes/0" if "positions" in says else '"sheet"', result.stderr)
+            self.assertEqual([], self.written())
+
+
+if __name__ == "__main__":
+    unittest.main()
