@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "mp1map/pe_array.h"
@@ -8,8 +9,9 @@
 
 namespace hemirad {
 
-/// Bytes that solving a mesh will hold on the device.
-std::uint64_t device_bytes(const Mesh& mesh, std::uint32_t resolution, FormFactorMode mode,
-                           std::uint64_t row_bytes, const mp1map::PeArray& array);
+/// Bytes that solving so many bands of a mesh will hold on the device.
+std::uint64_t device_bytes(const Mesh& mesh, std::size_t bands, std::uint32_t resolution,
+                           FormFactorMode mode, std::uint64_t row_bytes,
+                           const mp1map::PeArray& array);
 
 }  // namespace hemirad

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/layered_lightmap.h"
 #include "cli/text.h"
 #include "errors.h"
 #include "lightmap/atomic_file.h"
-#include "lightmap/rasterize.h"
 #include "lightmap/write_exr.h"
 #include "lightmap/write_preview.h"
 #include "scene/printable.h"
@@ -37,7 +37,7 @@ void check_finite(const fs::path& file, const Lightmap& lightmap) {
                                   ": values are beyond the range of float");
     };
     check(lightmap.values);
-    for (const auto& [name, bands] : lightmap.layers) check(bands);
+    for (const auto& [name, layer] : lightmap.layers) check(layer.values);
 }
 
 /// Below, digits are lost; half has no std::numeric_limits without OpenEXR.
@@ -107,18 +107,16 @@ void check_outputs(const SolveOptions& options) {
 
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error) {
-    auto lightmap = rasterize(mesh, solution, layout, options.quantity);
-    if (error != nullptr)
-        lightmap.layers["error"] = rasterize(mesh, *error, layout, options.quantity).values;
-    write_lightmap(options, lightmap, attributes_of(options, solution));
+    write_lightmap(options, layered_lightmap(options, mesh, layout, solution, error),
+                   attributes_of(options, solution));
 }
 
 void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                            const Solution& solution) {
     auto attributes = attributes_of(options, solution);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
-    write_lightmap(options, rasterize(mesh, with_ambient(mesh, solution), layout, options.quantity),
-                   attributes);
+    const Solution interim = with_ambient(mesh, solution);
+    write_lightmap(options, layered_lightmap(options, mesh, layout, interim, nullptr), attributes);
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

@@ -22,6 +22,11 @@ struct SnapshotInterval {
     double seconds = 0;
 };
 
+/// What the EXR holds besides light.
+struct LayerWishes {
+    bool emission = false, normal = false, position = false;
+};
+
 struct SolveOptions {
     std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
     std::optional<std::filesystem::path> preview, faces, report;
@@ -34,6 +39,7 @@ struct SolveOptions {
     double texel_size = 0;  ///< m; 0: default_texel_size()
     Quantity quantity = Quantity::irradiance;
     PixelType pixels = PixelType::float32;
+    LayerWishes layers;
     std::string device;  ///< as mp1map::Device::open takes it
     std::uint32_t compute_units = 0;
     SnapshotInterval snapshots;
@@ -53,6 +59,9 @@ CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution);
 /// --shooter-samples; `samples` holds what auto stands for.
 CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples);
 
+/// --lights, of solve and info.
+void add_lights(CLI::App& command, Lights& lights);
+
 void add_device(CLI::App& command, std::string& device);
 
 /// --device to --tile, --layout and --broadcast.
@@ -66,6 +75,7 @@ void add_kernels(CLI::App& command, std::optional<std::filesystem::path>& folder
 std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options);
 
 std::string name_of(Quantity quantity);
+std::string name_of(Lights lights);
 std::string name_of(FormFactorMode mode);
 
 }  // namespace hemirad
