@@ -27,7 +27,7 @@ install(EXPORT hemirad-targets NAMESPACE hemirad:: DESTINATION ${package})
 # What read_scene, build_mesh, ProgressiveSolver and the writers of lightmaps need, not their insides.
 set(public_headers
     errors.h
-    scene/mesh.h scene/read_scene.h scene/scene.h
+    scene/lights.h scene/mesh.h scene/read_scene.h scene/scene.h
     formfactor/form_factors.h
     solver/bands.h solver/near_pairs.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h solver/solver.h
     solver/view_factors.h

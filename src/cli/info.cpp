@@ -25,6 +25,7 @@ struct InfoOptions {
     std::filesystem::path scene;
     MeshSettings mesh;
     std::uint32_t resolution = SolverSettings{}.resolution;
+    Lights lights = Lights::together;
 };
 
 // As options that give this mesh.
@@ -100,19 +101,44 @@ void print_bands(std::ostream& out, const Mesh& mesh) {
     for (std::size_t band = 0; band < mesh.bands.size(); ++band)
         out << "  " << printable(mesh.bands[band]) << ": emits "
             << number_text(emitted_flux(mesh, band)) << " W, solved as "
-            << printable(mesh.bands[plan.solved[plan.solution[band]]]) << '\n';
+            << printable(mesh.bands[plan.solved[plan.solution[0][band]].band]) << '\n';
 }
 
-void print_memory(std::ostream& out, const Mesh& mesh, std::uint32_t resolution) {
+double flux_of(const Mesh& mesh, const LightGroups& lights, std::uint32_t light) {
+    double flux = 0;
+    for (std::size_t band = 0; band < mesh.bands.size(); ++band)
+        flux += emitted_flux(mesh, lights, {.band = band, .light = light});
+    return flux;
+}
+
+// What --lights tells apart, whether or not it is asked to.
+void print_lights(std::ostream& out, const Mesh& mesh, Lights wanted) {
+    constexpr std::size_t kInFull = 40;
+    const auto how = wanted == Lights::together ? Lights::separate : wanted;
+    const auto plan = plan_bands(mesh, {.lights = how});
+    const auto& names = plan.lights.names;
+    out << "lights       " << names.size();
+    if (!names.empty())
+        out << "; --lights " << name_of(how) << " solves " << counted(plan.solved.size(), "band");
+    out << '\n';
+    for (std::uint32_t i = 0; i < std::min(names.size(), kInFull); ++i)
+        out << "  " << printable(names[i]) << ": emits "
+            << number_text(flux_of(mesh, plan.lights, i)) << " W in all bands\n";
+    if (names.size() > kInFull) out << "  and " << names.size() - kInFull << " more\n";
+}
+
+void print_memory(std::ostream& out, const Mesh& mesh, const InfoOptions& options) {
     out << "memory       ";
     if (mp1map::list_devices().empty()) {
         out << "no device to estimate it for\n";
         return;
     }
     const auto device = mp1map::Device::open("");
-    out << bytes_text(device_bytes(mesh, resolution, SolverSettings{}, device.summary())) << " of "
+    SolverSettings settings;
+    settings.parts.lights = options.lights;
+    out << bytes_text(device_bytes(mesh, options.resolution, settings, device.summary())) << " of "
         << bytes_text(device.summary().global_memory) << " on " << printable(device.summary().name)
-        << " at --resolution " << resolution << '\n';
+        << " at --resolution " << options.resolution << '\n';
 }
 
 int print_info(InfoOptions options, std::ostream& out) {
@@ -123,7 +149,8 @@ int print_info(InfoOptions options, std::ostream& out) {
     print_contents(out, scene, mesh, options.mesh);
     print_parts(out, mesh, options.mesh.backfaces);
     print_bands(out, mesh);
-    print_memory(out, mesh, options.resolution);
+    print_lights(out, mesh, options.lights);
+    print_memory(out, mesh, options);
     const auto warnings = warnings_of(scene, mesh);
     out << "warnings     " << warnings.size() << '\n';
     for (const auto& warning : warnings) out << "  " << printable(warning) << '\n';
@@ -140,6 +167,7 @@ void add_info(CLI::App& app, Command& chosen) {
     add_mesh_options(*command, options->mesh);
     add_element_size(*command, options->mesh);
     add_resolution(*command, options->resolution);
+    add_lights(*command, options->lights);
     command->callback(
         [&chosen, options] { chosen = [options] { return print_info(*options, std::cout); }; });
 }

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/layered_lightmap.h"
 #include "cli/text.h"
 #include "errors.h"
 #include "lightmap/atlas_file.h"
 #include "lightmap/atomic_file.h"
-#include "lightmap/rasterize.h"
 #include "lightmap/write_exr.h"
 #include "lightmap/write_preview.h"
 #include "scene/printable.h"
@@ -38,7 +38,7 @@ void check_finite(const fs::path& file, const Lightmap& lightmap) {
                                   ": values are beyond the range of float");
     };
     check(lightmap.values);
-    for (const auto& [name, bands] : lightmap.layers) check(bands);
+    for (const auto& [name, layer] : lightmap.layers) check(layer.values);
 }
 
 /// Below, digits are lost; half has no std::numeric_limits without OpenEXR.
@@ -112,22 +112,20 @@ void check_outputs(const SolveOptions& options) {
 
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error) {
-    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas) {
-        auto lightmap = rasterize(mesh, solution, layout, options.quantity, atlas);
-        if (error != nullptr)
-            lightmap.layers["error"] =
-                rasterize(mesh, *error, layout, options.quantity, atlas).values;
-        write_lightmap(options, atlas, lightmap, attributes_of(options, solution));
-    }
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
+        write_lightmap(options, atlas,
+                       layered_lightmap(options, mesh, layout, atlas, solution, error),
+                       attributes_of(options, solution));
 }
 
 void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                            const Solution& solution) {
     auto attributes = attributes_of(options, solution);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
-    const Solution ambient = with_ambient(mesh, solution);
+    const Solution interim = with_ambient(mesh, solution);
     for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
-        write_lightmap(options, atlas, rasterize(mesh, ambient, layout, options.quantity, atlas),
+        write_lightmap(options, atlas,
+                       layered_lightmap(options, mesh, layout, atlas, interim, nullptr),
                        attributes);
 }
 

@@ -29,7 +29,8 @@ void check_distinct(const std::filesystem::path& scene,
 /// or a name ends unfittingly; OutputError where one could not be written.
 void check_outputs(const SolveOptions& options);
 
-/// Lightmaps and previews of the solution so far; `error`, if not null, as layer of the lightmap.
+/// Lightmaps, with their layers, and previews of the solution so far; `error`, if not null, is a
+/// layer.
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error = nullptr);
 

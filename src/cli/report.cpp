@@ -7,6 +7,7 @@
 
 #include "cli/sha256.h"
 #include "lightmap/atomic_file.h"
+#include "lightmap/part_names.h"
 
 namespace hemirad {
 namespace {
@@ -58,17 +59,30 @@ Json settings_json(const SolveOptions& options) {
     return settings;
 }
 
-Json ledger_json(const Solution& solution) {
+Json ledger_json(const std::vector<std::string>& names, const std::vector<Ledger>& ledgers) {
     Json bands = Json::object();
-    for (std::size_t band = 0; band < solution.bands.size(); ++band) {
-        const auto& ledger = solution.ledger[band];
-        bands[solution.bands[band]] = {{"emitted", ledger.emitted},
-                                       {"absorbed", ledger.absorbed},
-                                       {"escaped", ledger.escaped},
-                                       {"unshot", ledger.unshot},
-                                       {"residual", ledger.residual()}};
+    for (std::size_t band = 0; band < names.size(); ++band) {
+        const auto& ledger = ledgers[band];
+        bands[names[band]] = {{"emitted", ledger.emitted},
+                              {"absorbed", ledger.absorbed},
+                              {"escaped", ledger.escaped},
+                              {"unshot", ledger.unshot},
+                              {"residual", ledger.residual()}};
     }
     return bands;
+}
+
+Json lights_json(const Solution& solution) {
+    Json lights = Json::array();
+    const auto layers = part_names(solution);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const auto& part = solution.parts[i];
+        if (part.kind == SolutionPart::Kind::light)
+            lights.push_back({{"name", part.name},
+                              {"layer", layers[i]},
+                              {"ledger", ledger_json(solution.bands, part.ledger)}});
+    }
+    return lights;
 }
 
 /// null where it was not asked for.
@@ -112,7 +126,8 @@ void write_report(const std::filesystem::path& path, const SolveOptions& options
         {"shots", outcome.solution.shots},
         {"repeated_shots", outcome.repeated_shots},
         {"unshot_fraction", outcome.solution.unshot_fraction},
-        {"ledger", ledger_json(outcome.solution)},
+        {"ledger", ledger_json(outcome.solution.bands, outcome.solution.ledger)},
+        {"lights", lights_json(outcome.solution)},
         {"error", error_json(outcome)},
         {"closure", {{"min", outcome.closure.least}, {"max", outcome.closure.most}}},
         {"seconds", seconds_json(outcome.seconds)},

@@ -7,6 +7,7 @@
 
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
+#include "cli/layered_lightmap.h"
 #include "cli/memory.h"
 #include "cli/outcome.h"
 #include "cli/outputs.h"
@@ -56,6 +57,25 @@ void require_light(const Work& work) {
         throw InputError(work.scene.file + ": " + *fault);
     if (emits_light(work.mesh)) return;
     throw InputError(work.scene.file + ": nothing emits light, so there is nothing to solve");
+}
+
+std::string with_fewer_lights(const Mesh& mesh, Lights lights) {
+    const auto count = group_lights(mesh, lights).names.size();
+    const auto by_material = group_lights(mesh, Lights::by_material).names.size();
+    if (by_material >= count) return "; emitters of objects of one name are one light";
+    return "; --lights by-material tells " + std::to_string(by_material) + " instead of " +
+           std::to_string(count) + " lights apart";
+}
+
+void require_few_bands(const Work& work, const SolveOptions& options,
+                       const mp1map::DeviceSummary& device) {
+    const auto& parts = options.solver.parts;
+    const auto bands = plan_bands(work.mesh, parts).solved.size();
+    if (bands <= most_bands(device)) return;
+    throw InputError(
+        work.scene.file + ": " + std::to_string(bands) + " bands to solve at once, " + device.name +
+        " takes " + std::to_string(most_bands(device)) +
+        (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 
 void require_memory(const Work& work, const SolveOptions& options,
@@ -189,6 +209,7 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
     constexpr double kBound = 0.02, kShooterBound = 0.01, kTolerance = 1e-2;
     SolveOptions pilot = without_snapshots(options);
     pilot.quiet = true;
+    pilot.solver.parts = {};
     pilot.solver.resolution = pilot.solver.shooter_samples = 0;
     pilot.solver.sampling_error = 0;
     pilot.solver.max_shots = SolverSettings{}.max_shots;
@@ -236,7 +257,9 @@ int solve(SolveOptions options) {
     auto work = prepare(options);
     print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
     require_light(work);
+    check_channels(options, work.mesh);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
+    require_few_bands(work, options, device.summary());
     require_memory(work, options, device.summary());
 
     const Interrupts interrupts;

@@ -13,6 +13,9 @@ const std::vector<std::string_view> kChartSources{"authored", "generated"};
 const std::vector<std::string_view> kQuantities{"irradiance", "radiosity"};
 const std::vector<std::string_view> kQualities{"draft", "medium", "high", "ultra"};
 const std::vector<std::string_view> kFormFactorModes{"count", "analytic"};
+const std::vector<std::string_view> kLights{"together", "separate", "by-material"};
+const std::vector<std::string_view> kLayers{"direct",   "indirect", "emission", "normal",
+                                            "position", "coverage", "error"};
 constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
 
 void add_file_options(CLI::App& command, SolveOptions& options) {
@@ -95,6 +98,29 @@ SnapshotInterval snapshot_interval(const OptionValue& value) {
     return {0, positive_number(seconds)};
 }
 
+// Of the EXR; coverage is there anyway.
+void wish_for(const OptionValue& layer, SolveOptions& options) {
+    bool coverage = true;
+    bool* const wishes[] = {&options.solver.parts.direct, &options.solver.parts.indirect,
+                            &options.layers.emission,     &options.layers.normal,
+                            &options.layers.position,     &coverage,
+                            &options.estimate_error};
+    *wishes[one_of(layer, kLayers)] = true;
+}
+
+void add_layers(CLI::App& command, SolveOptions& options) {
+    add_value(command,
+              {"--layers", "NAME,...",
+               "further layers of the EXR: direct, indirect, emission, normal, position, error"},
+              [&](const OptionValue& value) {
+                  for (std::size_t first = 0; first <= value.text.size();) {
+                      const auto end = std::min(value.text.find(',', first), value.text.size());
+                      wish_for({value.option, value.text.substr(first, end - first)}, options);
+                      first = end + 1;
+                  }
+              });
+}
+
 void add_picture_options(CLI::App& command, SolveOptions& options) {
     add_value(command,
               {"--quantity", "irradiance|radiosity", "what the lightmap holds, W/m^2 [irradiance]"},
@@ -103,6 +129,8 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
               });
     command.add_flag_callback(
         "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
+    add_lights(command, options.solver.parts.lights);
+    add_layers(command, options);
     add_value(command,
               {"--snapshot-every", "SHOTS|SECONDSs",
                "write the picture so far, what is unshot spread evenly"},
@@ -163,6 +191,18 @@ void add_machine_options(CLI::App& command, SolveOptions& options) {
     add_kernels(command, options.solver.kernels_dir);
 }
 
+std::string layers_text(const SolveOptions& options) {
+    std::string text;
+    const std::pair<bool, const char*> wishes[] = {{options.solver.parts.direct, "direct"},
+                                                   {options.solver.parts.indirect, "indirect"},
+                                                   {options.layers.emission, "emission"},
+                                                   {options.layers.normal, "normal"},
+                                                   {options.layers.position, "position"}};
+    for (const auto& [wished, name] : wishes)
+        if (wished) text += (text.empty() ? "" : ",") + std::string(name);
+    return text;
+}
+
 void add_talk_options(CLI::App& command, SolveOptions& options) {
     auto* const quiet =
         command.add_flag("-q,--quiet", options.quiet, "say nothing but warnings and faults");
@@ -210,6 +250,15 @@ CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples) {
             samples = value.text == "auto" ? automatic
                                            : static_cast<std::uint32_t>(whole_number(value, 1, 64));
         });
+}
+
+void add_lights(CLI::App& command, Lights& lights) {
+    add_value(
+        command,
+        {"--lights", "together|separate|by-material",
+         "a layer light.NAME of the EXR for each object that emits, or each such material "
+         "[together]"},
+        [&](const OptionValue& value) { lights = static_cast<Lights>(one_of(value, kLights)); });
 }
 
 void add_device(CLI::App& command, std::string& device) {
@@ -276,6 +325,10 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
     if (options.target_error)
         result.emplace_back("--target-error", number_text(*options.target_error));
     if (solver.salvo != 0) result.emplace_back("--salvo", std::to_string(solver.salvo));
+    if (solver.parts.lights != Lights::together)
+        result.emplace_back("--lights", name_of(solver.parts.lights));
+    if (const auto layers = layers_text(options); !layers.empty())
+        result.emplace_back("--layers", layers);
     if (solver.max_shots != SolverSettings{}.max_shots)
         result.emplace_back("--max-shots", std::to_string(solver.max_shots));
     if (std::isfinite(solver.time_limit))
@@ -288,6 +341,10 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
 
 std::string name_of(FormFactorMode mode) {
     return std::string(kFormFactorModes[static_cast<std::size_t>(mode)]);
+}
+
+std::string name_of(Lights lights) {
+    return std::string(kLights[static_cast<std::size_t>(lights)]);
 }
 
 std::string name_of(Quantity quantity) {

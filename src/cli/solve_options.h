@@ -23,6 +23,11 @@ struct SnapshotInterval {
     double seconds = 0;
 };
 
+/// What the EXR holds besides light.
+struct LayerWishes {
+    bool emission = false, normal = false, position = false;
+};
+
 struct SolveOptions {
     std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
     std::optional<std::filesystem::path> preview, faces, report;
@@ -36,6 +41,7 @@ struct SolveOptions {
     std::uint32_t atlas_count = 1;  ///< as the layout of the scene's charts turns out
     Quantity quantity = Quantity::irradiance;
     PixelType pixels = PixelType::float32;
+    LayerWishes layers;
     std::string device;  ///< as mp1map::Device::open takes it
     std::uint32_t compute_units = 0;
     SnapshotInterval snapshots;
@@ -55,6 +61,9 @@ CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution);
 /// --shooter-samples; `samples` holds what auto stands for.
 CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples);
 
+/// --lights, of solve and info.
+void add_lights(CLI::App& command, Lights& lights);
+
 void add_device(CLI::App& command, std::string& device);
 
 /// --device to --tile, --layout and --broadcast.
@@ -68,6 +77,7 @@ void add_kernels(CLI::App& command, std::optional<std::filesystem::path>& folder
 std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOptions& options);
 
 std::string name_of(Quantity quantity);
+std::string name_of(Lights lights);
 std::string name_of(FormFactorMode mode);
 
 }  // namespace hemirad

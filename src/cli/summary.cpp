@@ -6,6 +6,7 @@
 
 #include "cli/text.h"
 #include "scene/printable.h"
+#include "solver/bands.h"
 
 namespace hemirad {
 namespace {
@@ -29,6 +30,13 @@ std::string ending(const SolveOptions& options, const Outcome& outcome) {
             return "interrupted; the picture so far is valid";
     }
     return {};
+}
+
+std::string lights_of(const SolveOptions& options, const Mesh& mesh) {
+    const auto lights = options.solver.parts.lights;
+    if (lights == Lights::together) return "";
+    return counted(group_lights(mesh, lights).names.size(), "light") + " apart, " +
+           counted(plan_bands(mesh, options.solver.parts).solved.size(), "band") + " solved\n";
 }
 
 std::string size_of(const Mesh& mesh) {
@@ -82,7 +90,8 @@ void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh
                               options.solver.shooter_samples,
                           "hemisphere") +
                       " a patch")
-        << ", form factors " << name_of(options.solver.form_factor) << '\n';
+        << ", form factors " << name_of(options.solver.form_factor) << '\n'
+        << lights_of(options, mesh);
 }
 
 void print_summary(std::ostream& out, const SolveOptions& options, const Outcome& outcome) {

@@ -22,6 +22,9 @@ namespace {
 
 constexpr const char* kCoverage = "coverage";
 
+/// Of channels and attributes: Imf::Name cuts what is longer off.
+constexpr std::size_t kLongestName = 255;
+
 /// Single-threaded, so that the order of the lines in the file is always the same.
 constexpr int kExrThreads = 0;
 
@@ -66,28 +69,21 @@ double largest_residual(const Solution& solution) {
 
 struct Channel {
     std::string name;
-    const std::vector<float>& values;
+    const std::vector<float>* values;
+    bool exact = false;
 };
 
 std::vector<Channel> channels_of(const Lightmap& lightmap) {
     std::vector<Channel> channels;
     for (std::size_t band = 0; band < lightmap.bands.size(); ++band)
-        channels.push_back({lightmap.bands[band], lightmap.values[band]});
-    channels.push_back({kCoverage, lightmap.coverage});
-    for (const auto& [layer, values] : lightmap.layers)
-        for (std::size_t band = 0; band < lightmap.bands.size(); ++band)
-            channels.push_back({layer + "." + lightmap.bands[band], values[band]});
+        channels.push_back({lightmap.bands[band], &lightmap.values[band]});
+    channels.push_back({kCoverage, &lightmap.coverage});
+    for (const auto& [name, layer] : lightmap.layers) {
+        const auto& components = layer.components.empty() ? lightmap.bands : layer.components;
+        for (std::size_t i = 0; i < components.size(); ++i)
+            channels.push_back({name + "." + components[i], &layer.values[i], layer.exact});
+    }
     return channels;
-}
-
-void require_channel_names(const Lightmap& lightmap) {
-    for (const std::string& band : lightmap.bands)
-        if (band.empty()) throw InputError("band \"\": an EXR channel needs a name");
-    std::set<std::string> taken;
-    for (const Channel& channel : channels_of(lightmap))
-        if (!taken.insert(channel.name).second)
-            throw InputError("band \"" + channel.name +
-                             "\": the EXR already has a channel of this name");
 }
 
 void insert(Imf::Header& header, const Attribute& attribute) {
@@ -99,15 +95,19 @@ void insert(Imf::Header& header, const Attribute& attribute) {
     }
 }
 
-Imf::PixelType imf_type(PixelType type) { return type == PixelType::half ? Imf::HALF : Imf::FLOAT; }
+Imf::PixelType imf_type(const Channel& channel, PixelType type) {
+    return type == PixelType::half && !channel.exact ? Imf::HALF : Imf::FLOAT;
+}
 
 Imf::Header header_of(const Lightmap& lightmap, const std::vector<Attribute>& attributes,
                       PixelType type) {
     Imf::Header header(static_cast<int>(lightmap.width), static_cast<int>(lightmap.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const Channel& channel : channels_of(lightmap))
-        header.channels().insert(channel.name, Imf::Channel(imf_type(type)));
+        header.channels().insert(channel.name, Imf::Channel(imf_type(channel, type)));
     for (const Attribute& attribute : attributes) insert(header, attribute);
+    for (const auto& [name, layer] : lightmap.layers)
+        if (!layer.meaning.empty()) insert(header, {"layer." + name, layer.meaning});
     return header;
 }
 
@@ -137,16 +137,16 @@ struct Frame {
 
 Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type) {
     Frame frame;
-    const auto add = [&](const std::string& channel, const std::vector<float>& values) {
-        if (type == PixelType::float32) {
-            frame.buffer.insert(channel, slice_of(values, lightmap.width, Imf::FLOAT));
-            return;
+    for (const Channel& channel : channels_of(lightmap)) {
+        if (imf_type(channel, type) == Imf::FLOAT) {
+            frame.buffer.insert(channel.name,
+                                slice_of(*channel.values, lightmap.width, Imf::FLOAT));
+            continue;
         }
-        frame.half_channels.push_back(halves(file, channel, values));
-        frame.buffer.insert(channel,
+        frame.half_channels.push_back(halves(file, channel.name, *channel.values));
+        frame.buffer.insert(channel.name,
                             slice_of(frame.half_channels.back(), lightmap.width, Imf::HALF));
-    };
-    for (const Channel& channel : channels_of(lightmap)) add(channel.name, channel.values);
+    }
     return frame;
 }
 
@@ -159,6 +159,20 @@ std::vector<Attribute> describe(const Solution& solution, Quantity quantity) {
             {"unshot_fraction", solution.unshot_fraction},
             {"ledger_residual", largest_residual(solution)},
             {"converged", solution.converged ? "true" : "false"}};
+}
+
+void require_channel_names(const Lightmap& lightmap) {
+    for (const std::string& band : lightmap.bands)
+        if (band.empty()) throw InputError("band \"\": an EXR channel needs a name");
+    std::set<std::string> taken;
+    for (const Channel& channel : channels_of(lightmap)) {
+        if (channel.name.size() > kLongestName)
+            throw InputError("channel \"" + channel.name.substr(0, 40) +
+                             "...\": an EXR takes names of up to 255 bytes");
+        if (!taken.insert(channel.name).second)
+            throw InputError("band \"" + channel.name +
+                             "\": the EXR already has a channel of this name");
+    }
 }
 
 void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,

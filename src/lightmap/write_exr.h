@@ -21,9 +21,13 @@ std::vector<Attribute> describe(const Solution& solution, Quantity quantity);
 
 enum class PixelType { float32, half };
 
-/// Scanline OpenEXR, ZIP: a channel a band plus `coverage`, LAYER.BAND for layers, no alpha. The
-/// same arguments give the same bytes. Throws OutputError, also where a value is beyond the range
-/// of half, and InputError where a band's name cannot be a channel's.
+/// InputError where bands' and layers' names cannot all be channels'.
+void require_channel_names(const Lightmap& lightmap);
+
+/// Scanline OpenEXR, ZIP: a channel a band plus `coverage`, LAYER.COMPONENT for layers, no alpha.
+/// What a layer means stands in the attribute `hemirad.layer.NAME`. The same arguments give the
+/// same bytes. Throws OutputError, also where a value is beyond the range of half, and InputError
+/// as require_channel_names().
 void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
                const std::vector<Attribute>& attributes, PixelType type = PixelType::float32);
 

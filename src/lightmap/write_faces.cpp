@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lightmap/atomic_file.h"
+#include "lightmap/part_names.h"
 #include "scene/csv.h"
 
 namespace hemirad {
@@ -42,32 +43,53 @@ double area_mean(std::span<const Fragment> fragments, const std::vector<double>&
     return sum / area;
 }
 
-void write_header(std::ostream& stream, const std::vector<std::string>& bands) {
-    stream << "face,object,material,area,cx,cy,cz";
-    for (const char* quantity : {"irradiance.", "radiosity."}) {
-        for (const std::string& band : bands) stream << ',' << csv_field(quantity + band);
+using Bands = std::vector<std::vector<double>>;
+
+/// Columns of values: a quantity's bands under the column's name and a dot.
+struct Quantities {
+    std::string prefix;
+    const Bands* bands;
+};
+
+std::vector<Quantities> quantities_of(const Solution& solution) {
+    std::vector<Quantities> quantities{{"irradiance.", &solution.irradiance},
+                                       {"radiosity.", &solution.radiosity}};
+    const auto names = part_names(solution);
+    for (std::size_t part = 0; part < names.size(); ++part) {
+        quantities.push_back({names[part] + ".irradiance.", &solution.parts[part].irradiance});
+        quantities.push_back({names[part] + ".radiosity.", &solution.parts[part].radiosity});
     }
+    return quantities;
+}
+
+void write_header(std::ostream& stream, const Solution& solution) {
+    stream << "face,object,material,area,cx,cy,cz";
+    for (const auto& quantity : quantities_of(solution))
+        for (const std::string& band : solution.bands)
+            stream << ',' << csv_field(quantity.prefix + band);
     stream << '\n';
 }
 
 void write_values(std::ostream& stream, const Shape& shape, std::span<const Fragment> fragments,
-                  const Solution& solution) {
+                  std::span<const Quantities> quantities) {
     const glm::dvec3& c = shape.centroid;
     for (const double value : {shape.area, c.x, c.y, c.z}) stream << ',' << decimal(value);
-    for (const auto* quantity : {&solution.irradiance, &solution.radiosity}) {
-        for (const auto& band : *quantity) stream << ',' << decimal(area_mean(fragments, band));
-    }
+    for (const auto& quantity : quantities)
+        for (const auto& band : *quantity.bands)
+            stream << ',' << decimal(area_mean(fragments, band));
 }
 
 void write_row(std::ostream& stream, const Scene& scene, std::size_t index,
-               std::span<const Fragment> fragments, const Solution& solution) {
+               std::span<const Fragment> fragments, std::span<const Quantities> quantities) {
     const Face& face = scene.faces[index];
     stream << index << ',' << csv_field(scene.objects[face.object]) << ','
            << csv_field(scene.materials[face.material].name);
     if (fragments.empty()) {
-        stream << std::string(4 + 2 * solution.bands.size(), ',');
+        std::size_t columns = 4;
+        for (const auto& quantity : quantities) columns += quantity.bands->size();
+        stream << std::string(columns, ',');
     } else {
-        write_values(stream, shape_of(scene, face), fragments, solution);
+        write_values(stream, shape_of(scene, face), fragments, quantities);
     }
     stream << '\n';
 }
@@ -77,13 +99,14 @@ void write_row(std::ostream& stream, const Scene& scene, std::size_t index,
 void write_faces(const std::filesystem::path& path, const Scene& scene, const Mesh& mesh,
                  const Solution& solution) {
     write_atomically(path, [&](std::ostream& stream) {
-        write_header(stream, solution.bands);
+        write_header(stream, solution);
+        const auto quantities = quantities_of(solution);
         std::size_t first = 0;
         for (std::size_t face = 0; face < scene.faces.size(); ++face) {
             std::size_t last = first;
             while (last < mesh.fragments.size() && mesh.fragments[last].face == face) ++last;
             write_row(stream, scene, face, std::span(mesh.fragments).subspan(first, last - first),
-                      solution);
+                      quantities);
             first = last;
         }
     });

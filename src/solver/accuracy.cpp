@@ -49,6 +49,7 @@ unsigned first_step(double target) {
 
 SolverSettings for_comparison(const SolverSettings& settings) {
     SolverSettings other = settings;
+    other.parts.direct = other.parts.indirect = false;
     if (settings.shooter_samples <= 1) {
         other.shooter_samples = 2;
         return other;
@@ -60,6 +61,7 @@ SolverSettings for_comparison(const SolverSettings& settings) {
 
 Solution difference(const Solution& a, const Solution& b) {
     Solution result = b;
+    result.parts.clear();
     result.irradiance = differences(a.irradiance, b.irradiance);
     result.radiosity = differences(a.radiosity, b.radiosity);
     return result;

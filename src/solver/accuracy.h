@@ -34,7 +34,7 @@ unsigned first_step(double target);
 /// errors: half of the samples and proxels; or twice the samples where there is one.
 SolverSettings for_comparison(const SolverSettings& settings);
 
-/// |a - b| of irradiance and radiosity, patch by patch; the rest is b's.
+/// |a - b| of irradiance and radiosity, patch by patch, of all light; the rest is b's.
 Solution difference(const Solution& a, const Solution& b);
 
 /// Flux that is still to be shot over the flux absorbed so far, and so the share of the light that

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "errors.h"
+#include "solver/assemble_solution.h"
+
 namespace hemirad {
 namespace {
 
@@ -45,14 +48,19 @@ PatchLight patch_light(const Mesh& mesh, const BandPlan& plan, std::uint32_t str
     light.emitted.resize(light.band_count * stride);
     light.reflectance.resize(light.band_count * stride);
     for (std::size_t band = 0; band < light.band_count; ++band) {
-        const double emitted = emitted_flux(mesh, plan.solved[band]);
-        light.band_weight.push_back(emitted > 0 ? 1.0f : 0.0f);
+        const SolvedBand& solved = plan.solved[band];
+        const double emitted = emitted_flux(mesh, plan.lights, solved);
+        // Who shoots, and how often, is up to the whole of the light, of which direct light is
+        // part.
+        light.band_weight.push_back(emitted > 0 && solved.reflects ? 1.0f : 0.0f);
         for (std::size_t i = 0; i < shooters.size(); ++i) {
             const Patch& patch = mesh.patches[shooters[i].first_patch];
-            const double own =
-                emitted_radiosity(mesh, patch, plan.solved[band]) * area_of(mesh, shooters[i]);
-            light.emitted[band * stride + i] = emitted > 0 ? static_cast<float>(own / emitted) : 0;
-            light.reflectance[band * stride + i] = reflectance(mesh, patch, plan.solved[band]);
+            const double own = emitted_radiosity(mesh, plan.lights, patch, solved);
+            if (own > 0)
+                light.emitted[band * stride + i] =
+                    static_cast<float>(own * area_of(mesh, shooters[i]) / emitted);
+            if (solved.reflects)
+                light.reflectance[band * stride + i] = reflectance(mesh, patch, solved.band);
         }
     }
     return light;
@@ -98,7 +106,28 @@ ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSe
                         pipeline_settings(mesh, settings, device.summary()), device, shooters);
 }
 
+// choose_shooter adds up every band for each of its 64 PEs in local memory, beside 8 bytes for each
+// of a salvo and of those that may look ahead.
+constexpr std::uint64_t kReducePes = 64, kReduceBytesPerBand = 4, kReduceBytes = 16 * kMostSalvo;
+constexpr std::uint64_t kMostBands = 1024;
+
+BandPlan planned(const Mesh& mesh, const SolverSettings& settings,
+                 const mp1map::DeviceSummary& device) {
+    BandPlan plan = plan_bands(mesh, settings.parts);
+    if (plan.solved.size() > most_bands(device))
+        throw InputError(std::to_string(plan.solved.size()) + " bands to solve at once; " +
+                         device.name + " has local memory for " +
+                         std::to_string(most_bands(device)));
+    return plan;
+}
+
 }  // namespace
+
+std::uint64_t most_bands(const mp1map::DeviceSummary& device) {
+    const std::uint64_t bytes = device.local_memory / kReducePes;
+    return std::min(bytes > kReduceBytes ? (bytes - kReduceBytes) / kReduceBytesPerBand : 0,
+                    kMostBands);
+}
 
 std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,
                                std::uint64_t patches, const mp1map::DeviceSummary& device) {
@@ -117,7 +146,7 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
                                      const mp1map::Device& device)
     : mesh_(mesh),
       settings_(settings),
-      plan_(plan_bands(mesh)),
+      plan_(planned(mesh, settings, device.summary())),
       pipeline_(pipeline_for(mesh, plan_, settings, device)) {
     pipeline_.init_plane();
     pipeline_.set_shot_limit(settings.max_shots, settings.max_shots);
@@ -218,35 +247,13 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
 
 Solution ProgressiveSolver::solution() {
     const device::Shot state = pipeline_.shot();
-    const auto received = pipeline_.received();
-    const auto unshot = pipeline_.unshot();
-    const auto escaped = pipeline_.escaped();
-
-    Solution solution;
-    solution.bands = mesh_.bands;
+    Solution solution =
+        assemble_solution(mesh_, plan_,
+                          {pipeline_.stride(), pipeline_.shooter_stride(), pipeline_.received(),
+                           pipeline_.unshot(), pipeline_.escaped()});
     solution.shots = state.shots;
     solution.unshot_fraction = state.unshot_fraction;
     solution.converged = state.status == kConverged || state.status == kExhausted;
-    for (std::size_t band = 0; band < mesh_.bands.size(); ++band) {
-        const std::size_t solved = plan_.solution[band];
-        const double emitted = emitted_flux(mesh_, band);
-        Ledger ledger{emitted, 0, emitted * escaped[solved], 0};
-        std::vector<double> irradiance, radiosity;
-        for (std::size_t i = 0; i < mesh_.patches.size(); ++i) {
-            const Patch& patch = mesh_.patches[i];
-            const std::size_t at = solved * pipeline_.stride() + i;
-            const double flux = emitted * received[at];
-            const double rho = reflectance(mesh_, patch, band);
-            irradiance.push_back(flux / mesh_.area(patch));
-            radiosity.push_back(emitted_radiosity(mesh_, patch, band) + rho * irradiance.back());
-            ledger.absorbed += (1 - rho) * flux;
-        }
-        for (std::size_t i = 0; i < mesh_.shooter_count(); ++i)
-            ledger.unshot += emitted * unshot[solved * pipeline_.shooter_stride() + i];
-        solution.irradiance.push_back(std::move(irradiance));
-        solution.radiosity.push_back(std::move(radiosity));
-        solution.ledger.push_back(ledger);
-    }
     return solution;
 }
 

@@ -40,7 +40,11 @@ struct SolverSettings {
     Variants variants = {};
     std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
     bool timed = false;                                     ///< keep the seconds of each kernel
+    PartSettings parts = {};  ///< more bands to solve; those of direct light change no other's bits
 };
+
+/// Bands that a device can solve at once.
+std::uint64_t most_bands(const mp1map::DeviceSummary& device);
 
 /// What a device can spare of the bytes asked for: up to a quarter of its memory. By default 1 GiB
 /// is asked for, and nothing is used where it holds the rows of fewer than one shooter in a

@@ -77,11 +77,13 @@ TEST_F(WriteExr, BandsNameTheirChannels) {
 
 TEST_F(WriteExr, LayersHaveTheirBandsBehindTheirName) {
     auto lightmap = numbered_lightmap(5, 4, kRgb);
-    lightmap.layers["error"] = {lightmap.values[2], lightmap.values[0], lightmap.values[1]};
+    lightmap.layers["error"].values = {lightmap.values[2], lightmap.values[0], lightmap.values[1]};
+    lightmap.layers["error"].meaning = "error, W/m^2";
 
     write_exr(file("a.exr"), lightmap, {});
 
     const auto read = read_back(file("a.exr"));
+    EXPECT_EQ(text_of(read.header, "layer.error"), "error, W/m^2");
     ASSERT_EQ(read.channels.size(), 7u);
     EXPECT_EQ(read.channels.at("error.R"), lightmap.values[2]);
     EXPECT_EQ(read.channels.at("error.B"), lightmap.values[1]);
@@ -90,9 +92,32 @@ TEST_F(WriteExr, LayersHaveTheirBandsBehindTheirName) {
 
 TEST_F(WriteExr, ABandMayNotTakeALayersName) {
     auto lightmap = numbered_lightmap(3, 2, {"R", "error.R"});
-    lightmap.layers["error"] = lightmap.values;
+    lightmap.layers["error"].values = lightmap.values;
 
     EXPECT_THROW(write_exr(file("a.exr"), lightmap, {}), InputError);
+}
+
+TEST_F(WriteExr, LayersMayHaveComponentsOfTheirOwnAndKeepAllDigits) {
+    auto lightmap = numbered_lightmap(3, 2, {"R"});
+    const std::vector<float> exact(6, 1000.0625f);
+    lightmap.layers["position"] = {{"X", "Y"}, {exact, lightmap.values[0]}, "", true};
+
+    write_exr(file("a.exr"), lightmap, {}, PixelType::half);
+
+    const auto read = read_back(file("a.exr"));
+    ASSERT_EQ(read.channels.size(), 4u);
+    EXPECT_EQ(read.channels.at("position.X"), exact);
+    EXPECT_EQ(read.channels.at("position.Y"), lightmap.values[0]);
+    EXPECT_EQ(read.header.channels()["R"].type, Imf::HALF);
+}
+
+TEST_F(WriteExr, ANameThatAnExrWouldCutOffIsRefused) {
+    const std::string longest(255, 'x');
+    write_exr(file("a.exr"), numbered_lightmap(2, 2, {longest}), {});
+
+    EXPECT_TRUE(read_back(file("a.exr")).channels.contains(longest));
+    EXPECT_THROW(write_exr(file("b.exr"), numbered_lightmap(2, 2, {longest + 'x'}), {}),
+                 InputError);
 }
 
 TEST_F(WriteExr, AttributesComeBack) {

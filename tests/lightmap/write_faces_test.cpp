@@ -44,6 +44,24 @@ TEST_F(WriteFaces, OneRowAnInputPolygonWithAreaMeansDroppedOnesEmpty) {
               "1,\"floor, ground\",white,2,1,0.5,3,7,0,0.333333333,3.5,1e-07,123456789\n");
 }
 
+TEST_F(WriteFaces, PartsOfTheLightHaveColumnsOfTheirOwn) {
+    Solution solution = pencil_solution();
+    solution.bands = {"Y"};
+    solution.irradiance.resize(1);
+    solution.radiosity.resize(1);
+    solution.parts = {{SolutionPart::Kind::light, "a,b", {{0, 4}}, {{1, 1}}, {}},
+                      {SolutionPart::Kind::direct, "", {{4, 0}}, {{2, 2}}, {}}};
+
+    write_faces(file("a.csv"), pencil_scene(), pencil_mesh(), solution);
+
+    EXPECT_EQ(bytes_of(file("a.csv")),
+              "face,object,material,area,cx,cy,cz,irradiance.Y,radiosity.Y,"
+              "light.a%2Cb.irradiance.Y,light.a%2Cb.radiosity.Y,direct.irradiance.Y,"
+              "direct.radiosity.Y\n"
+              "0,sliver,\"say \"\"red\"\"\",,,,,,,,,,\n"
+              "1,\"floor, ground\",white,2,1,0.5,3,7,3.5,3,1,1,2\n");
+}
+
 TEST_F(WriteFaces, TheCentroidOfAConcavePolygonIsThatOfItsArea) {
     Scene scene = pencil_scene();
     scene.positions = {{0, 0, 0}, {3, 0, 0}, {1, 1, 0}, {0, 3, 0}};  // notched towards the origin

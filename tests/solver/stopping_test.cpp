@@ -179,7 +179,7 @@ TEST(Bands, MayBeAsManyAsTheFileNames) {
 TEST(Bands, OfAGreySceneAreSolvedOnce) {
     Solving grey(box_of_bands({0.5, 0.5, 0.5}, {1, 1, 1}), settings(64));
     Solving one(box_of_bands({0.5}, {1}), settings(64));
-    EXPECT_EQ(plan_bands(grey.mesh).solved, std::vector<std::size_t>{0});
+    EXPECT_EQ(plan_bands(grey.mesh).solved, std::vector<SolvedBand>{{0}});
     EXPECT_EQ(grey.solver.device_bytes(), one.solver.device_bytes());
 
     grey.solver.solve(go_on);
@@ -193,8 +193,8 @@ TEST(Bands, OfAGreySceneAreSolvedOnce) {
 TEST(Bands, OfProportionalEmissionAreSolvedOnceAndScaled) {
     Solving run(box_of_bands({0.5, 0.5, 0.4}, {1, 4, 1}), exact_settings(1e-6));
     const BandPlan plan = plan_bands(run.mesh);
-    EXPECT_EQ(plan.solved, (std::vector<std::size_t>{0, 2}));
-    EXPECT_EQ(plan.solution, (std::vector<std::size_t>{0, 0, 1}));
+    EXPECT_EQ(plan.solved, (std::vector<SolvedBand>{{0}, {2}}));
+    EXPECT_EQ(plan.solution, (std::vector<std::vector<std::size_t>>{{0, 0, 1}}));
 
     run.solver.solve(go_on);
 
