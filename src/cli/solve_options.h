@@ -24,7 +24,7 @@ struct SnapshotInterval {
 
 struct SolveOptions {
     std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
-    std::optional<std::filesystem::path> preview, faces, report;
+    std::optional<std::filesystem::path> gltf, preview, faces, report;
     MeshSettings mesh;
     /// A resolution, samples or sampling error of 0 is the dial's: set_accuracy().
     SolverSettings solver = {.resolution = 0, .sampling_error = 0};
