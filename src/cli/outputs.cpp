@@ -13,6 +13,7 @@
 #include "lightmap/write_preview.h"
 #include "scene/printable.h"
 #include "solver/ambient.h"
+#include "view/lit_scene.h"
 
 namespace hemirad {
 namespace {
@@ -138,6 +139,9 @@ void write_interim_picture(const SolveOptions& options, const Scene& scene, cons
     const auto lightmap = rasterize(mesh, lit, layout, options.quantity);
     write_lightmap(options, lightmap, attributes);
     write_solved_scene(options, scene, mesh, layout, lit);
+    if (options.snapshots.kept)
+        write_exr(snapshot_file(options.output, solution.shots), lightmap, attributes,
+                  options.pixels);
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

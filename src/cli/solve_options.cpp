@@ -86,7 +86,15 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
     add_value(command,
               {"--snapshot-every", "SHOTS|SECONDSs",
                "write the picture so far, what is unshot spread evenly"},
-              [&](const OptionValue& value) { options.snapshots = snapshot_interval(value); });
+              [&](const OptionValue& value) {
+                  const bool kept = options.snapshots.kept;
+                  options.snapshots = snapshot_interval(value);
+                  options.snapshots.kept = kept;
+              });
+    command
+        .add_flag("--keep-snapshots", options.snapshots.kept,
+                  "each also as NAME-SHOTS.exr, which hemirad view plays")
+        ->needs("--snapshot-every");
 }
 
 std::uint32_t lanes(const OptionValue& value) {

@@ -20,6 +20,7 @@ namespace hemirad {
 struct SnapshotInterval {
     std::uint64_t shots = 0;
     double seconds = 0;
+    bool kept = false;  ///< each also in a file of its own, snapshot_file()
 };
 
 struct SolveOptions {
