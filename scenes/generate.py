@@ -19,6 +19,7 @@ class Scene:
     def __init__(self, materials):
         self.materials = materials  # name -> (reflectance RGB, radiance RGB)
         self.faces = []  # (object, material, [(x, y, z), ...])
+        self.camera = None  # (name, eye, glTF's rotation, yfov), 1:1
 
     def add(self, name, material, points):
         self.faces.append((name, material, [tuple(map(micrometres, p)) for p in points]))
@@ -154,6 +155,14 @@ def gltf_mesh(scene, buffer, name, faces):
     return {"name": name, "primitives": primitives}
 
 
+def add_camera(document, name, eye, rotation, yfov):
+    document["cameras"] = [{"name": name, "type": "perspective",
+                            "perspective": {"aspectRatio": 1.0, "yfov": yfov, "znear": 0.01}}]
+    document["scenes"][0]["nodes"].append(len(document["nodes"]))
+    document["nodes"].append({"name": name, "translation": eye, "rotation": rotation,
+                              "camera": 0})
+
+
 def write_gltf(scene, folder, name, comment):
     buffer = GltfBuffer()
     meshes = [gltf_mesh(scene, buffer, o, faces) for o, faces in scene.objects().items()]
@@ -171,6 +180,8 @@ def write_gltf(scene, folder, name, comment):
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": len(buffer.bytes), "uri": uri}],
     }
+    if scene.camera:
+        add_camera(document, *scene.camera)
     path = os.path.join(folder, name + ".gltf")
     with open(path, "w", encoding="ascii", newline="\n") as out:
         json.dump(document, out, indent=1)
@@ -257,6 +268,9 @@ def cornell(_):
     for name, top in CORNELL_BLOCKS.items():
         for points in block_faces(top):
             add(name, "white", points)
+    # Focal length 0.035, 0.025 x 0.025; looks along +z: half a turn about y.
+    scene.camera = ("front", [0.278, 0.273, -0.8], [0.0, 1.0, 0.0, 0.0],
+                    round(2 * math.atan(0.025 / 2 / 0.035), 6))
     return scene
 
 

@@ -6,9 +6,11 @@
 #include "cli/exit_codes.h"
 #include "cli/formfactors.h"
 #include "cli/info.h"
+#include "cli/render.h"
 #include "cli/solve.h"
 #include "cli/sweep.h"
 #include "cli/tradeoff.h"
+#include "cli/view.h"
 #include "errors.h"
 #include "scene/printable.h"
 
@@ -44,6 +46,8 @@ CommandLine::CommandLine()
     add_formfactors(app_, chosen_);
     add_info(app_, chosen_);
     add_devices(app_, chosen_);
+    add_view(app_, chosen_);
+    add_render(app_, chosen_);
     add_sweep(app_, chosen_);
     add_tradeoff(app_, chosen_);
     for (auto* const command : app_.get_subcommands({})) command->allow_extras();

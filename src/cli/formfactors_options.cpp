@@ -80,7 +80,7 @@ void require(bool holds, const std::string& otherwise) {
 /// A scene's own endings are refused, so that a mistaken order of names does no harm.
 void check_output_ending(const FormFactorsOptions& options) {
     if (options.format == FactorFormat::csv)
-        return check_ending("--output", *options.output, ".csv");
+        return check_ending("--output", *options.output, {".csv"});
     const auto ending = options.output->extension();
     for (const char* taken : {".obj", ".mtl", ".gltf", ".glb", ".bin", ".vs3"})
         if (ending == taken) reject({"--output", options.output->native()}, "no scene's ending");
@@ -107,7 +107,7 @@ void check_formfactors_options(const FormFactorsOptions& options) {
     std::vector<fs::path> files;
     if (options.output) check_output_ending(options), files.push_back(*options.output);
     if (options.report) {
-        check_ending("--report", *options.report, ".json");
+        check_ending("--report", *options.report, {".json"});
         files.push_back(*options.report);
     }
     check_distinct(options.scene, files);

@@ -64,6 +64,20 @@ Extent extent(const OptionValue& value) {
     return {*width, *height};
 }
 
+std::array<double, 3> coordinates(const OptionValue& value) {
+    std::array<double, 3> numbers{};
+    std::string_view rest = value.text;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const auto comma = i + 1 < numbers.size() ? rest.find(',') : rest.size();
+        const auto number = parsed<double>(rest.substr(0, std::min(comma, rest.size())));
+        if (comma == rest.npos || !number || !std::isfinite(*number))
+            reject(value, "three numbers, such as 0,1.5,-2");
+        numbers[i] = *number;
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    return numbers;
+}
+
 std::size_t one_of(const OptionValue& value, const std::vector<std::string_view>& words) {
     const auto found = std::find(words.begin(), words.end(), value.text);
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());

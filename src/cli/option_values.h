@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -33,6 +34,9 @@ struct Extent {
 
 /// "32x16", both sides from 1 to 8192.
 Extent extent(const OptionValue& value);
+
+/// "0,1.5,-2": three finite numbers.
+std::array<double, 3> coordinates(const OptionValue& value);
 
 /// Index of the word among `words`.
 std::size_t one_of(const OptionValue& value, const std::vector<std::string_view>& words);

@@ -9,10 +9,13 @@
 #include "errors.h"
 #include "lightmap/atlas_file.h"
 #include "lightmap/atomic_file.h"
+#include "lightmap/rasterize.h"
 #include "lightmap/write_exr.h"
+#include "lightmap/write_gltf.h"
 #include "lightmap/write_preview.h"
 #include "scene/printable.h"
 #include "solver/ambient.h"
+#include "view/lit_scene.h"
 
 namespace hemirad {
 namespace {
@@ -79,13 +82,18 @@ std::vector<fs::path> output_files(const SolveOptions& options) {
         files.push_back(atlas_file(options.output, atlas));
         if (options.preview) files.push_back(atlas_file(*options.preview, atlas));
     }
+    if (options.gltf) files.push_back(*options.gltf);
     if (options.faces) files.push_back(*options.faces);
     return files;
 }
 
-void check_ending(std::string_view option, const fs::path& file, std::string_view ending) {
-    if (file.extension() == ending || (fs::exists(file) && !fs::is_regular_file(file))) return;
-    reject({option, file.native()}, "a name ending in " + std::string(ending));
+void check_ending(std::string_view option, const fs::path& file,
+                  std::initializer_list<std::string_view> endings) {
+    if (std::ranges::count(endings, file.extension().native()) > 0) return;
+    if (fs::exists(file) && !fs::is_regular_file(file)) return;
+    std::string names;
+    for (const auto ending : endings) names += (names.empty() ? "" : " or ") + std::string(ending);
+    reject({option, file.native()}, "a name ending in " + names);
 }
 
 void check_distinct(const fs::path& scene, const std::vector<fs::path>& files) {
@@ -101,10 +109,11 @@ void check_distinct(const fs::path& scene, const std::vector<fs::path>& files) {
 }
 
 void check_outputs(const SolveOptions& options) {
-    check_ending("--output", options.output, ".exr");
-    if (options.preview) check_ending("--preview", *options.preview, ".png");
-    if (options.faces) check_ending("--faces", *options.faces, ".csv");
-    if (options.report) check_ending("--report", *options.report, ".json");
+    check_ending("--output", options.output, {".exr"});
+    if (options.gltf) check_ending("--gltf", *options.gltf, {".glb", ".gltf"});
+    if (options.preview) check_ending("--preview", *options.preview, {".png"});
+    if (options.faces) check_ending("--faces", *options.faces, {".csv"});
+    if (options.report) check_ending("--report", *options.report, {".json"});
     const auto files = all_files(options);
     check_distinct(options.scene, files);
     for (const auto& file : files) check_writable(file);
@@ -118,15 +127,31 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
                        attributes_of(options, solution));
 }
 
-void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                           const Solution& solution) {
+void write_solved_scene(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+                        const ChartLayout& layout, const Solution& solution) {
+    if (!options.gltf) return;
+    const auto folder = fs::absolute(*options.gltf).parent_path();
+    ChartLayout downwards = layout;  // as V always runs in glTF
+    downwards.flip_v = false;
+    write_gltf(*options.gltf, scene, mesh, read_cameras(options.scene),
+               lightmap_uvs(scene, mesh, downwards),
+               rasterize(mesh, solution, layout, Quantity::irradiance),
+               place_of(options.output).lexically_relative(place_of(folder)));
+}
+
+void write_interim_picture(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+                           const ChartLayout& layout, const Solution& solution) {
     auto attributes = attributes_of(options, solution);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
-    const Solution interim = with_ambient(mesh, solution);
-    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
-        write_lightmap(options, atlas,
-                       layered_lightmap(options, mesh, layout, atlas, interim, nullptr),
-                       attributes);
+    const Solution lit = with_ambient(mesh, solution);
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas) {
+        const auto lightmap = layered_lightmap(options, mesh, layout, atlas, lit, nullptr);
+        write_lightmap(options, atlas, lightmap, attributes);
+        if (options.snapshots.kept)
+            write_exr(snapshot_file(atlas_file(options.output, atlas), solution.shots), lightmap,
+                      attributes, options.pixels);
+    }
+    write_solved_scene(options, scene, mesh, layout, lit);
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

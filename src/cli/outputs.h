@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,10 +17,10 @@ namespace hemirad {
 /// Every file that the options ask for, in the order of writing; the report comes last.
 std::vector<std::filesystem::path> output_files(const SolveOptions& options);
 
-/// Viewers go by a file's ending, and no part of a scene has one of ours: InputError where it is
-/// another. Devices and pipes have none.
+/// Viewers go by a file's ending, and no part of a scene but a glTF has one of ours: InputError
+/// where it is another. Devices and pipes have none.
 void check_ending(std::string_view option, const std::filesystem::path& file,
-                  std::string_view ending);
+                  std::initializer_list<std::string_view> endings);
 
 /// InputError where two of the files are one, or one is the scene.
 void check_distinct(const std::filesystem::path& scene,
@@ -34,9 +35,13 @@ void check_outputs(const SolveOptions& options);
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                    const Solution& solution, const Solution* error = nullptr);
 
-/// As write_picture(), with_ambient(); the lightmap's header says so.
-void write_interim_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                           const Solution& solution);
+/// As write_picture() and write_solved_scene(), with_ambient(); the lightmap's header says so.
+void write_interim_picture(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+                           const ChartLayout& layout, const Solution& solution);
+
+/// The scene with its irradiance, if the options ask for it.
+void write_solved_scene(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+                        const ChartLayout& layout, const Solution& solution);
 
 /// A warning for each band whose light is so weak that the lightmap's pixels lose digits of all of
 /// it.

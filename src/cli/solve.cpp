@@ -37,8 +37,17 @@ struct Work {
     ChartLayout layout;
 };
 
-Work prepare(SolveOptions& options) {
+/// A glTF as output means both: engines read its PNG, measurements the EXR beside it.
+void choose_outputs(SolveOptions& options) {
     if (options.output.empty()) options.output = options.scene.stem().string() + ".exr";
+    const auto ending = options.output.extension();
+    if (options.gltf || (ending != ".glb" && ending != ".gltf")) return;
+    options.gltf = options.output;
+    options.output.replace_extension(".exr");
+}
+
+Work prepare(SolveOptions& options) {
+    choose_outputs(options);
     check_outputs(options);
     Work work;
     work.scene = read_scene(options.scene);
@@ -49,6 +58,10 @@ Work prepare(SolveOptions& options) {
     options.charts.texel_size = work.layout.texel_size;
     options.atlas_count = static_cast<std::uint32_t>(work.layout.atlases.size());
     if (options.atlas_count > 1) check_outputs(options);
+    if (options.gltf && options.atlas_count > 1)
+        throw InputError(work.scene.file + ": a glTF takes one lightmap, and this needs " +
+                         std::to_string(options.atlas_count) +
+                         " atlases; raise --texel-size or --atlas-size, or take --charts generated");
     return work;
 }
 
@@ -99,7 +112,7 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
         shot_clock.note(progress);
         display.show(progress.shots, progress.unshot_fraction);
         if (snapshots.due(progress))
-            write_interim_picture(options, work.mesh, work.layout, solver.solution());
+            write_interim_picture(options, work.scene, work.mesh, work.layout, solver.solution());
         return !interrupts.requested();
     });
 }
@@ -234,6 +247,7 @@ void write_results(const Work& work, const SolveOptions& options, const Outcome&
     const bool layer = options.estimate_error && outcome.error;
     write_picture(options, work.mesh, work.layout, outcome.solution,
                   layer ? &outcome.error->by_patch : nullptr);
+    write_solved_scene(options, work.scene, work.mesh, work.layout, outcome.solution);
     if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
 }
 

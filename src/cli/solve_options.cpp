@@ -20,8 +20,12 @@ constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
 
 void add_file_options(CLI::App& command, SolveOptions& options) {
     add_scene(command, options.scene);
-    add_text(command, {"-o,--output", "FILE.exr", "the lightmap [SCENE's name, here]"},
+    add_text(command,
+             {"-o,--output", "FILE.exr|.glb|.gltf",
+              "the lightmap, or --gltf with the lightmap beside it [SCENE's name .exr, here]"},
              options.output);
+    add_text(command, {"--gltf", "FILE.glb|.gltf", "the scene with its lightmap, for engines"},
+             options.gltf);
     add_text(command, {"--preview", "FILE.png", "the lightmap tone-mapped, to look at"},
              options.preview);
     add_text(command, {"--faces", "FILE.csv", "the solution as numbers, a row a polygon"},
@@ -134,7 +138,15 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
     add_value(command,
               {"--snapshot-every", "SHOTS|SECONDSs",
                "write the picture so far, what is unshot spread evenly"},
-              [&](const OptionValue& value) { options.snapshots = snapshot_interval(value); });
+              [&](const OptionValue& value) {
+                  const bool kept = options.snapshots.kept;
+                  options.snapshots = snapshot_interval(value);
+                  options.snapshots.kept = kept;
+              });
+    command
+        .add_flag("--keep-snapshots", options.snapshots.kept,
+                  "each also as NAME-SHOTS.exr, which hemirad view plays")
+        ->needs("--snapshot-every");
 }
 
 std::uint32_t lanes(const OptionValue& value) {

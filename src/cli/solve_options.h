@@ -21,6 +21,7 @@ namespace hemirad {
 struct SnapshotInterval {
     std::uint64_t shots = 0;
     double seconds = 0;
+    bool kept = false;  ///< each also in a file of its own, snapshot_file()
 };
 
 /// What the EXR holds besides light.
@@ -30,7 +31,7 @@ struct LayerWishes {
 
 struct SolveOptions {
     std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
-    std::optional<std::filesystem::path> preview, faces, report;
+    std::optional<std::filesystem::path> gltf, preview, faces, report;
     MeshSettings mesh;
     /// A resolution, samples or sampling error of 0 is the dial's: set_accuracy().
     SolverSettings solver = {.resolution = 0, .sampling_error = 0};

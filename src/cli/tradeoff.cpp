@@ -75,7 +75,7 @@ class Tradeoff {
           scene_(read_scene(options.scene)),
           mesh_settings_(mesh_settings(options, scene_)),
           device_(mp1map::Device::open(options.device)) {
-        check_ending("--output", options.output, ".csv");
+        check_ending("--output", options.output, {".csv"});
         check_distinct(options.scene, {options.output});
         check_writable(options.output);
     }

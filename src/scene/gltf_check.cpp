@@ -17,6 +17,7 @@ constexpr auto kReferences = std::to_array<Reference>({
     {"scenes/*/nodes/*", "nodes"},
     {"nodes/*/children/*", "nodes"},
     {"nodes/*/mesh", "meshes"},
+    {"nodes/*/camera", "cameras"},
     {"meshes/*/primitives/*/indices", "accessors"},
     {"meshes/*/primitives/*/attributes/*", "accessors"},
     {"meshes/*/primitives/*/material", "materials"},
@@ -214,8 +215,8 @@ void check_extensions(const InputFile& file, const Json& json) {
 
 void check_sections(const InputFile& file, const Json& json) {
     if (!json.is_object()) fail(file, "glTF", "is not a JSON object");
-    for (const char* name : {"accessors", "buffers", "bufferViews", "images", "materials", "meshes",
-                             "nodes", "scenes", "textures"}) {
+    for (const char* name : {"accessors", "buffers", "bufferViews", "cameras", "images",
+                             "materials", "meshes", "nodes", "scenes", "textures"}) {
         const auto found = json.find(name);
         if (found == json.end()) continue;
         if (!found->is_array()) fail(file, name, "is not an array");

@@ -36,6 +36,9 @@ void warn(Scene& scene, const std::string& element, const std::string& reason);
 std::optional<std::filesystem::path> resolve_reference(const InputFile& file,
                                                        const std::string& reference);
 
+/// By its ending.
+bool is_gltf(const std::filesystem::path& path);
+
 /// What Scene promises of spectra and sizes; the checks that all formats share.
 void check_scene(const InputFile& file, const Scene& scene);
 

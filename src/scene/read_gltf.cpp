@@ -9,7 +9,7 @@
 #include <numeric>
 #include <optional>
 
-#include "scene/gltf_file.h"
+#include "scene/gltf_nodes.h"
 #include "scene/input_file.h"
 #include "scene/quantum.h"
 
@@ -20,13 +20,6 @@ struct Builder {
     const GltfFile& gltf;
     Scene scene = {};
     std::optional<std::uint32_t> default_material = {};
-};
-
-/// A node in the world: transforms only ever multiply on the way down.
-struct PlacedNode {
-    std::size_t node;
-    glm::dmat4 world_from_node;
-    double quantum = 0;  ///< m, of its place
 };
 
 std::string node_path(std::size_t node) { return "nodes/" + std::to_string(node); }
@@ -131,6 +124,8 @@ std::vector<std::size_t> scene_nodes(const GltfFile& gltf, const std::vector<int
     return result;
 }
 
+}  // namespace
+
 std::vector<PlacedNode> place_nodes(const GltfFile& gltf) {
     const std::vector<int> parent = parents(gltf);
     check_cycles(gltf, parent);
@@ -153,6 +148,8 @@ std::vector<PlacedNode> place_nodes(const GltfFile& gltf) {
     }
     return placed;
 }
+
+namespace {
 
 std::uint32_t material_index(Builder& builder, const tinygltf::Primitive& primitive) {
     if (primitive.material >= 0) return static_cast<std::uint32_t>(primitive.material);

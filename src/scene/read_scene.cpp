@@ -17,13 +17,18 @@ std::string lower_extension(const std::filesystem::path& path) {
 }
 
 Scene read_format(const std::string& extension, const InputFile& file) {
-    if (extension == ".gltf" || extension == ".glb") return read_gltf(file);
+    if (is_gltf(file.path)) return read_gltf(file);
     if (extension == ".obj") return read_obj(file);
     if (extension == ".vs3") return read_vs3(file);
     throw InputError(file.name + ": is neither .gltf, .glb, .obj nor .vs3");
 }
 
 }  // namespace
+
+bool is_gltf(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    return extension == ".gltf" || extension == ".glb";
+}
 
 Scene read_scene(const std::filesystem::path& path) {
     const InputFile file = read_input_file(path);

@@ -32,11 +32,12 @@ INCLUDES = [
     (r"src/formfactor/.*", r"formfactor/.*|scene/.*|errors\.h"),
     (r"src/reference/.*", r"reference/.*|scene/.*|errors\.h"),
     (r"src/lightmap/.*", r"lightmap/.*|scene/.*|solver/solution\.h|errors\.h"),
+    (r"src/view/.*", r"(view|lightmap|scene)/.*|errors\.h"),
     (r"src/solver/.*", r"(solver|formfactor|scene)/.*|mp1map/\w+\.h|kernels/shared\.h|errors\.h"),
     (r"src/cli/tradeoff.*",
      r"(cli|solver|lightmap|formfactor|scene|reference)/.*|mp1map/(device|pe_array)\.h|errors\.h"),
     (r"src/cli/.*|src/main\.cpp",
-     r"(cli|solver|lightmap|formfactor|scene)/.*|mp1map/(device|pe_array)\.h|errors\.h"),
+     r"(cli|solver|view|lightmap|formfactor|scene)/.*|mp1map/(device|pe_array)\.h|errors\.h"),
     (r"src/.*", r"(?!)"),
 ]
 

@@ -1,0 +1,198 @@
+#include "cli/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <iostream>
+#include <memory>
+
+#include "cli/exit_codes.h"
+#include "cli/outputs.h"
+#include "cli/text.h"
+#include "cli/view.h"
+#include "errors.h"
+#include "lightmap/atomic_file.h"
+#include "lightmap/png.h"
+#include "lightmap/write_exr.h"
+#include "scene/printable.h"
+#include "view/lit_scene.h"
+#include "view/picture_of.h"
+#include "view/render.h"
+
+namespace hemirad {
+namespace {
+
+struct RenderOptions {
+    std::filesystem::path scene, output;  ///< output empty: the scene's name with .png, here
+    std::optional<std::filesystem::path> lightmap;
+    std::string camera;
+    std::optional<glm::dvec3> eye, look_at;
+    glm::dvec3 up{0, 1, 0};
+    std::optional<double> fov;  ///< radians
+    std::optional<Extent> size;
+    RenderSettings render;
+    std::optional<double> exposure, largest;
+    bool false_colour = false, quiet = false;
+};
+
+glm::dvec3 point(const OptionValue& value) {
+    const auto [x, y, z] = coordinates(value);
+    return {x, y, z};
+}
+
+double angle(const OptionValue& value) {
+    const double degrees = positive_number(value);
+    if (degrees >= 180) reject(value, "degrees, above 0 and below 180");
+    return glm::radians(degrees);
+}
+
+void add_camera_options(CLI::App& command, RenderOptions& options) {
+    add_text(command, {"--camera", "NAME", "one of the scene's [its only one]"}, options.camera);
+    add_value(command, {"--eye", "X,Y,Z", "or look from here, metres"},
+              [&](const OptionValue& value) { options.eye = point(value); });
+    add_value(command, {"--look-at", "X,Y,Z", "this shall be in the middle [the scene's middle]"},
+              [&](const OptionValue& value) { options.look_at = point(value); });
+    add_value(command, {"--up", "X,Y,Z", "what is up from --eye [0,1,0]"},
+              [&](const OptionValue& value) { options.up = point(value); });
+    add_value(command, {"--fov", "DEGREES", "from top to bottom [the camera's; 45]"},
+              [&](const OptionValue& value) { options.fov = angle(value); });
+    command.get_option("--camera")->excludes("--eye");
+    for (const char* name : {"--look-at", "--up"}) command.get_option(name)->needs("--eye");
+}
+
+void add_picture_options(CLI::App& command, RenderOptions& options) {
+    add_text(command,
+             {"-o,--output", "FILE.png|.exr",
+              "the picture, or radiance in W/(m^2 sr) [SOLVED's name .png, here]"},
+             options.output);
+    add_value(command, {"--size", "WxH", "pixels [800x600, or 600 high in the camera's shape]"},
+              [&](const OptionValue& value) { options.size = extent(value); });
+    add_value(command, {"--samples", "N", "N x N rays a pixel [3]"}, [&](const OptionValue& value) {
+        options.render.samples = static_cast<std::uint32_t>(whole_number(value, 1, 32));
+    });
+    add_text(command, {"--layer", "NAME", "a layer of the lightmap alone"}, options.render.layer);
+    add_value(command,
+              {"--exposure", "X", "white is 1 - exp(-X radiance) [nine tenths below 80 % white]"},
+              [&](const OptionValue& value) { options.exposure = positive_number(value); })
+        ->excludes(add_value(command,
+                             {"--false-colour", "[MAX]",
+                              "irradiance, all bands added, up to MAX W/m^2 [nearly all of it]"},
+                             [&](const OptionValue& value) {
+                                 options.false_colour = true;
+                                 if (!value.text.empty()) options.largest = positive_number(value);
+                             })
+                       ->expected(0, 1));
+}
+
+[[noreturn]] void fail(const Scene& scene, const std::string& reason) {
+    throw InputError(scene.file + ": " + reason);
+}
+
+Camera named_camera(const LitScene& lit, const std::string& name) {
+    const auto& cameras = lit.cameras;
+    if (name.empty() && cameras.size() == 1) return cameras[0];
+    const auto found = std::ranges::find(cameras, name, &Camera::name);
+    if (!name.empty() && found != cameras.end()) return *found;
+    std::string names;
+    for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
+    const std::string has = cameras.empty() ? "has no camera" : "has the cameras " + names;
+    fail(lit.scene, (name.empty() ? "" : "no camera \"" + printable(name) + "\"; it ") + has +
+                        "; --camera names one, --eye X,Y,Z needs none");
+}
+
+glm::dvec3 middle_of(const Scene& scene) {
+    glm::dvec3 least = scene.positions[0], most = least;
+    for (const glm::dvec3& p : scene.positions) {
+        least = glm::min(least, p);
+        most = glm::max(most, p);
+    }
+    return 0.5 * least + 0.5 * most;
+}
+
+Camera own_camera(const Scene& scene, const RenderOptions& options) {
+    Camera camera{"eye", *options.eye};
+    const glm::dvec3 ahead = options.look_at.value_or(middle_of(scene)) - camera.eye;
+    const glm::dvec3 right = glm::cross(ahead, options.up);
+    if (!(glm::length(right) > 1e-9 * glm::length(ahead) * glm::length(options.up)))
+        fail(scene, "--eye looks along --up, or nowhere; --look-at and --up say where");
+    camera.forward = ahead / glm::length(ahead);
+    camera.up = glm::normalize(glm::cross(right, ahead));
+    camera.yfov = glm::radians(45.0);
+    return camera;
+}
+
+void choose_size(const RenderOptions& options, const Camera& camera, RenderSettings& settings) {
+    if (options.size) {
+        settings.width = options.size->width;
+        settings.height = options.size->height;
+    } else if (camera.aspect > 0) {
+        settings.width = static_cast<std::uint32_t>(
+            std::clamp(std::round(settings.height * camera.aspect), 1.0, 8192.0));
+    }
+}
+
+void write_radiance(const RenderOptions& options, const LitScene& lit, const Camera& camera,
+                    const Lightmap& rendered) {
+    write_exr(options.output, rendered,
+              {{"version", std::string(HEMIRAD_VERSION)},
+               {"scene", lit.scene.file},
+               {"camera", camera.name},
+               {"quantity", std::string("radiance")},
+               {"unit", std::string("W/(m^2 sr)")}});
+}
+
+/// What a second picture needs to be shown alike.
+std::string write_picture(const RenderOptions& options, const Lightmap& rendered) {
+    const double exposure = options.exposure.value_or(automatic_exposure(rendered));
+    const Picture picture = options.false_colour
+                                ? false_colours_of(rendered, options.largest, "W/m^2")
+                                : picture_of(rendered, exposure);
+    write_atomically(options.output, [&](std::ostream& stream) { write_png(stream, picture); });
+    return options.false_colour ? "" : ", --exposure " + number_text(exposure);
+}
+
+void check_output(RenderOptions& options) {
+    if (options.output.empty()) options.output = options.scene.stem().string() + ".png";
+    check_ending("--output", options.output, {".png", ".exr"});
+    check_distinct(options.scene, {options.output});
+    check_writable(options.output);
+    if (options.output.extension() == ".exr" && (options.false_colour || options.exposure))
+        throw InputError(
+            "hemirad: --exposure and --false-colour need a .png, an .exr holds "
+            "radiance");
+}
+
+int render_scene(RenderOptions options) {
+    check_output(options);
+    const LitScene lit = read_lit_scene(options.scene, options.lightmap);
+    auto camera = options.eye ? own_camera(lit.scene, options) : named_camera(lit, options.camera);
+    camera.yfov = options.fov.value_or(camera.yfov);
+    choose_size(options, camera, options.render);
+    if (options.false_colour) options.render.shown = Shown::irradiance;
+    const Lightmap rendered = render(lit, camera, options.render);
+    std::string note;
+    if (options.output.extension() == ".exr")
+        write_radiance(options, lit, camera, rendered);
+    else
+        note = write_picture(options, rendered);
+    if (!options.quiet)
+        std::cerr << printable(options.output.string()) << ": " << rendered.width << " x "
+                  << rendered.height << " from " << camera.name << note << '\n';
+    return kDone;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Command& chosen) {
+    auto* const command = app.add_subcommand("render", "a picture of a solved scene");
+    const auto options = std::make_shared<RenderOptions>();
+    add_lit_scene(*command, options->scene, options->lightmap);
+    add_camera_options(*command, *options);
+    add_picture_options(*command, *options);
+    command->add_flag("-q,--quiet", options->quiet, "say nothing but warnings and faults");
+    command->callback(
+        [&chosen, options] { chosen = [options] { return render_scene(*options); }; });
+}
+
+}  // namespace hemirad

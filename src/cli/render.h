@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/options.h"
+
+namespace hemirad {
+
+/// hemirad render SOLVED.glb: a picture of it.
+void add_render(CLI::App& app, Command& chosen);
+
+}  // namespace hemirad

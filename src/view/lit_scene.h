@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lightmap/lightmap.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace hemirad {
+
+/// What `hemirad solve --gltf` left: a scene of triangles with Face::lightmap_uvs, and its light.
+struct LitScene {
+    Scene scene;
+    std::vector<Camera> cameras;
+    Lightmap lightmap;
+    Quantity quantity = Quantity::irradiance;  ///< of the lightmap
+    std::filesystem::path exr;                 ///< where the lightmap lay
+    std::string settings;                      ///< that it was solved with, as its header says
+};
+
+/// `exr`: instead of the file that the glTF names, which lies in the glTF's folder or below.
+/// Throws InputError.
+LitScene read_lit_scene(const std::filesystem::path& gltf,
+                        const std::optional<std::filesystem::path>& exr);
+
+/// An interim picture that was kept.
+struct Snapshot {
+    std::uint64_t shots = 0;
+    Lightmap lightmap;
+};
+
+/// The file in which the picture after so many shots is kept: NAME-SHOTS.exr beside NAME.exr.
+std::filesystem::path snapshot_file(const std::filesystem::path& exr, std::uint64_t shots);
+
+/// Those that lie beside the scene's lightmap and are of the same size, scene and settings, by
+/// shots. Others are left out, and so is what cannot be read.
+std::vector<Snapshot> read_snapshots(const LitScene& scene);
+
+}  // namespace hemirad

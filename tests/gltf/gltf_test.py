@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Solved scenes as glTF, judged by Khronos's validator. HEMIRAD names the program, GLTF_VALIDATOR
+the folder into which npm installs it."""
+import json
+import os
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "cli"))
+import scenes  # noqa: E402
+
+HEMIRAD = os.environ["HEMIRAD"]
+VALIDATOR = pathlib.Path(os.environ["GLTF_VALIDATOR"])
+SCENES = HERE.parents[1] / "scenes"
+QUICK = ("--quality", "draft", "--quiet", "--max-shots", "20")
+
+
+def install_validator():
+    """Once: the pinned version of tests/gltf/package.json."""
+    wanted = (HERE / "package.json").read_text(encoding="utf-8")
+    here = VALIDATOR / "package.json"
+    if (VALIDATOR / "node_modules").is_dir() and here.read_text(encoding="utf-8") == wanted:
+        return
+    VALIDATOR.mkdir(parents=True, exist_ok=True)
+    shutil.copy(HERE / "package.json", here)
+    subprocess.run(["npm", "install", "--silent", "--no-audit", "--no-fund", "--no-package-lock"],
+                   cwd=VALIDATOR, check=True, timeout=240)
+
+
+def faults_of(*files):
+    result = subprocess.run(["node", str(HERE / "validate.js"), *map(str, files)], text=True,
+                            capture_output=True, timeout=60, check=True,
+                            env={**os.environ, "NODE_PATH": str(VALIDATOR / "node_modules")})
+    return [fault for faults in json.loads(result.stdout).values() for fault in faults]
+
+
+def document_of(glb):
+    data = glb.read_bytes()
+    length, = struct.unpack_from("<I", data, 12)
+    return json.loads(data[20:20 + length])
+
+
+class Gltf(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        install_validator()
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
+        (self.folder / "scene.obj").write_bytes(scenes.obj())
+
+    def solve(self, scene, *arguments):
+        return subprocess.run([HEMIRAD, "solve", str(scene), *QUICK, *arguments], cwd=self.folder,
+                              text=True, capture_output=True, timeout=120, check=False)
+
+    def test_the_cornell_box_is_valid(self):
+        result = self.solve(SCENES / "cornell.gltf", "-o", "box.glb", "--patch-size", "0.15")
+
+        self.assertEqual(0, result.returncode, result.stderr)
+        self.assertEqual([], faults_of(self.folder / "box.glb"))
+        self.assertTrue((self.folder / "box.exr").is_file())
+        box = document_of(self.folder / "box.glb")
+        self.assertEqual("box.exr", box["asset"]["extras"]["hemirad"]["exr"])
+        self.assertIn("tall_block", [node["name"] for node in box["nodes"]])
+        for material in box["materials"]:
+            self.assertEqual(1, material["extensions"]["MOZ_lightmap"]["texCoord"])
+
+    def test_polygons_of_obj_are_valid_also_as_text_and_beside_an_exr_elsewhere(self):
+        (self.folder / "maps").mkdir()
+        result = self.solve("scene.obj", "--gltf", "scene.gltf", "-o", "maps/light.exr")
+
+        self.assertEqual(0, result.returncode, result.stderr)
+        self.assertEqual([], faults_of(self.folder / "scene.gltf"))
+        text = (self.folder / "scene.gltf").read_text(encoding="utf-8")
+        self.assertEqual("maps/light.exr", json.loads(text)["asset"]["extras"]["hemirad"]["exr"])
+
+    def test_bands_and_odd_names_are_valid(self):
+        material = scenes.lamp(name='<b>"lamp"\n\\')
+        material["extras"] = {"reflectance": {"450nm": 0.2, "nir": 0.5}, "emission": {"nir": 1.5}}
+        (self.folder / "bands.gltf").write_bytes(scenes.gltf(material=material))
+
+        result = self.solve("bands.gltf", "-o", "solved.glb")
+
+        self.assertEqual(0, result.returncode, result.stderr)
+        self.assertEqual([], faults_of(self.folder / "solved.glb"))
+
+    def test_the_validator_sees_faults(self):
+        self.solve("scene.obj", "-o", "bad.gltf")
+        bad = json.loads((self.folder / "bad.gltf").read_text(encoding="utf-8"))
+        del bad["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]
+        (self.folder / "bad.gltf").write_text(json.dumps(bad), encoding="utf-8")
+
+        self.assertIn("MESH_PRIMITIVE_INDEXED_SEMANTIC_CONTINUITY",
+                      [fault["code"] for fault in faults_of(self.folder / "bad.gltf")])
+
+    def test_other_endings_and_the_scene_itself_are_refused(self):
+        for arguments in (("--gltf", "a.fbx"), ("-o", "scene.obj")):
+            result = self.solve("scene.obj", *arguments)
+            self.assertEqual(1, result.returncode)
+            self.assertEqual(1, result.stderr.count("\n"), result.stderr)
+        shutil.copy(SCENES / "cornell.gltf", self.folder / "box.gltf")
+        self.assertIn("would overwrite the scene",
+                      self.solve("box.gltf", "-o", "box.gltf").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

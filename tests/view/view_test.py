@@ -1,0 +1,244 @@
+#!/usr/bin/env python3
+"""Pages and pictures of solved scenes, by the program that HEMIRAD names."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "cli"))
+import scenes  # noqa: E402
+
+HEMIRAD = os.environ["HEMIRAD"]
+CORNELL = HERE.parents[1] / "scenes" / "cornell.gltf"
+
+
+def read_png(path):
+    """8 bits a channel, as rows of (r, g, b)."""
+    data = path.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height, depth, kind = struct.unpack_from(">IIBB", data, 16)
+    assert (depth, kind) == (8, 2)
+    at, packed = 8, b""
+    while at < len(data):
+        length, = struct.unpack_from(">I", data, at)
+        if data[at + 4:at + 8] == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    return unfiltered(zlib.decompress(packed), width, height)
+
+
+def unfiltered(raw, width, height):
+    rows, above, stride = [], bytes(3 * width), 3 * width + 1
+    for y in range(height):
+        kind, line = raw[y * stride], bytearray(raw[y * stride + 1:(y + 1) * stride])
+        for i in range(len(line)):
+            left, up = (line[i - 3] if i >= 3 else 0), above[i]
+            corner = above[i - 3] if i >= 3 else 0
+            line[i] = (line[i] + (0, left, up, (left + up) // 2,
+                                  paeth(left, up, corner))[kind]) & 255
+        rows.append([tuple(line[i:i + 3]) for i in range(0, len(line), 3)])
+        above = bytes(line)
+    return rows
+
+
+def paeth(left, up, corner):
+    guess = left + up - corner
+    return min((left, up, corner), key=lambda value: abs(guess - value))
+
+
+class Solved(unittest.TestCase):
+    """A folder with a solved Cornell box, made once a class."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.solved = pathlib.Path(folder.name)
+        result = cls.call(cls.solved, "solve", str(CORNELL), "-o", "box.glb", "--quality", "draft",
+                          "--patch-size", "0.1", "--max-shots", "60", "--quiet",
+                          "--snapshot-every", "20", "--keep-snapshots")
+        assert result.returncode == 0, result.stderr
+
+    @staticmethod
+    def call(folder, *arguments):
+        return subprocess.run([HEMIRAD, *arguments], cwd=folder, text=True, capture_output=True,
+                              timeout=120, check=False)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for file in self.solved.iterdir():
+            shutil.copy(file, self.folder)
+
+    def hemirad(self, *arguments):
+        return self.call(self.folder, *arguments)
+
+    def assert_done(self, result):
+        self.assertEqual(0, result.returncode, result.stderr)
+
+    def assert_refused(self, result, says):
+        self.assertEqual(1, result.returncode, result.stderr)
+        self.assertEqual(1, result.stderr.count("\n"), result.stderr)
+        self.assertIn(says, result.stderr)
+
+
+class View(Solved):
+    def page(self, *arguments, scene="box.glb"):
+        self.assert_done(self.hemirad("view", scene, "-o", "page.html", *arguments))
+        return (self.folder / "page.html").read_text(encoding="utf-8")
+
+    def lit_scene(self, page):
+        return json.loads(re.search(r'id="lit-scene">(.*?)</script>', page, re.S)[1])
+
+    def test_a_page_needs_nothing_but_itself(self):
+        page = self.page()
+
+        self.assertIn("THREE.OrbitControls", page)
+        self.assertIn("default-src 'none'", page)
+        self.assertEqual([], re.findall(r'(?:src|href)="', page))
+
+    def test_a_page_holds_the_scene_its_cameras_and_its_light(self):
+        lit = self.lit_scene(self.page())
+
+        self.assertEqual(["front"], [camera["name"] for camera in lit["cameras"]])
+        self.assertEqual(["all"], [layer["name"] for layer in lit["layers"]])
+        self.assertEqual(4, len(lit["materials"]))
+        self.assertGreater(lit["exposure"], 0)
+
+    def test_snapshots_are_played_in_the_order_of_their_shots(self):
+        self.assertEqual([20, 40, 60],
+                         [snapshot["shots"] for snapshot in self.lit_scene(self.page())["snapshots"]])
+
+    def test_snapshots_of_another_solve_are_left_out(self):
+        self.assert_done(self.hemirad("solve", str(CORNELL), "-o", "other.glb", "--patch-size",
+                                      "0.1", "--max-shots", "3", "--quality", "draft", "--quiet"))
+        shutil.copy(self.folder / "other.exr", self.folder / "box-30.exr")
+        (self.folder / "box-31.exr").write_bytes(b"no picture")
+
+        self.assertEqual([20, 40, 60],
+                         [snapshot["shots"] for snapshot in self.lit_scene(self.page())["snapshots"]])
+
+    def test_names_do_not_become_markup(self):
+        name = "<script>alert(1)<!--.glb"
+        shutil.copy(self.folder / "box.glb", self.folder / name)
+
+        page = self.page(scene=name)
+
+        self.assertNotIn("<script>alert", page)
+        self.assertEqual(name, self.lit_scene(page)["name"])
+
+    def test_what_is_not_solved_is_refused(self):
+        shutil.copy(CORNELL, self.folder)
+        self.assert_refused(self.hemirad("view", "cornell.gltf"), "is not solved")
+
+    def test_a_missing_lightmap_is_named(self):
+        (self.folder / "box.exr").unlink()
+        self.assert_refused(self.hemirad("view", "box.glb"), "box.exr: no such file")
+
+    def test_a_lightmap_out_of_the_folder_is_taken_only_where_the_user_says_so(self):
+        glb = (self.folder / "box.glb").read_bytes()
+        (self.folder / "box.glb").write_bytes(glb.replace(b'"box.exr"', b'"../x.ex"'))
+        self.assert_refused(self.hemirad("view", "box.glb"), "is not in its folder")
+        self.page("--lightmap", "box.exr")
+
+    def test_lightmaps_that_are_none_are_refused(self):
+        exr = (self.folder / "box.exr").read_bytes()
+        for bad in (b"", b"no picture", exr[:200], exr[:-500]):
+            (self.folder / "box.exr").write_bytes(bad)
+            self.assert_refused(self.hemirad("view", "box.glb"), "box.exr: ")
+
+    def test_the_solved_scene_is_not_overwritten(self):
+        self.assert_refused(self.hemirad("view", "box.glb", "-o", "box.glb"), ".html")
+
+
+class Render(Solved):
+    def picture(self, *arguments):
+        self.assert_done(self.hemirad("render", "box.glb", "-o", "a.png", *arguments))
+        return read_png(self.folder / "a.png")
+
+    def test_the_box_is_seen_by_its_camera(self):
+        rows = self.picture("--camera", "front", "--size", "90x90")
+
+        red, green, blue = rows[45][3]
+        self.assertGreater(red, 2 * green)  # the left wall
+        red, green, blue = rows[45][86]
+        self.assertGreater(green, 1.2 * red)  # the right one
+        self.assertGreater(min(rows[9][45]), 200)  # the lamp in the ceiling
+
+    def test_the_only_camera_needs_no_name_and_gives_the_picture_its_shape(self):
+        rows = self.picture()
+
+        self.assertEqual((600, 600), (len(rows), len(rows[0])))
+
+    def test_a_camera_of_ones_own_sees_the_same(self):
+        asked = self.picture("--eye", "0.278,0.273,-0.8", "--look-at", "0.278,0.273,0", "--fov",
+                             "39.3078", "--size", "60x60", "--exposure", "2")
+        named = self.picture("--size", "60x60", "--exposure", "2")
+
+        far = max(abs(a - b) for x, y in zip(asked, named) for p, q in zip(x, y)
+                  for a, b in zip(p, q))
+        self.assertLessEqual(far, 2)
+
+    def test_the_exposure_that_was_chosen_is_told(self):
+        told = self.hemirad("render", "box.glb", "-o", "a.png", "--size", "50x50")
+        exposure = re.search(r"--exposure (\S+)", told.stderr)[1]
+        chosen = (self.folder / "a.png").read_bytes()
+
+        self.picture("--size", "50x50", "--exposure", exposure)
+        self.assertEqual(chosen, (self.folder / "a.png").read_bytes())
+
+    def test_more_exposure_is_brighter(self):
+        dark, bright = (self.picture("--size", "9x9", "--exposure", x)[4][4] for x in ("0.1", "5"))
+        self.assertLess(max(dark), min(bright))
+
+    def test_false_colours_come_with_a_scale(self):
+        for arguments in (("--false-colour",), ("--false-colour", "40")):
+            rows = self.picture("--size", "200x100", *arguments)
+            self.assertGreater(len(rows), 100)
+            self.assertIn((255, 255, 255), [p for row in rows[120:] for p in row])
+
+    def test_radiance_goes_into_an_exr(self):
+        self.assert_done(self.hemirad("render", "box.glb", "-o", "a.exr", "--size", "20x20"))
+        data = (self.folder / "a.exr").read_bytes()
+        self.assertIn(b"W/(m^2 sr)", data)
+        self.assert_refused(self.hemirad("render", "box.glb", "-o", "a.exr", "--false-colour"),
+                            "an .exr holds radiance")
+
+    def test_doubtful_views_are_refused_in_one_line(self):
+        for arguments, says in {
+                ("--camera", "back"): "it has the cameras front",
+                ("--eye", "0,0"): "three numbers",
+                ("--eye", "0,0,x"): "three numbers",
+                ("--eye", "0,5,0", "--look-at", "0,0,0"): "looks along --up",
+                ("--eye", "0,0,0", "--fov", "180"): "below 180",
+                ("--eye", "0,0,0", "--camera", "front"): "excludes",
+                ("--look-at", "0,0,0"): "--eye",
+                ("--layer", "lamp"): "it has none",
+                ("--size", "0x9"): "WIDTHxHEIGHT",
+                ("--exposure", "-1"): "above 0",
+                ("--false-colour", "-1"): "above 0",
+        }.items():
+            with self.subTest(arguments=arguments):
+                self.assert_refused(self.hemirad("render", "box.glb", "-o", "a.png", *arguments),
+                                    says)
+                self.assertFalse((self.folder / "a.png").exists())
+
+    def test_a_scene_without_cameras_says_what_to_do(self):
+        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
+        (self.folder / "scene.obj").write_bytes(scenes.obj())
+        self.assert_done(self.hemirad("solve", "scene.obj", "-o", "s.glb", "--quality", "draft",
+                                      "--quiet"))
+        self.assert_refused(self.hemirad("render", "s.glb"), "--eye X,Y,Z needs none")
+
+
+if __name__ == "__main__":
+    unittest.main()
