@@ -37,9 +37,8 @@ int list(std::ostream& out) {
 }  // namespace
 
 void add_devices(CLI::App& app, Command& chosen) {
-    auto* const command =
-        app.add_subcommand("devices", "OpenCL devices, with the PE array each would get");
-    command->callback([&chosen] { chosen = [] { return list(std::cout); }; });
+    auto& command = add_command(app, "devices", "OpenCL devices, with the PE array each would get");
+    on_chosen(command, [&chosen] { chosen = [] { return list(std::cout); }; });
 }
 
 }  // namespace hemirad

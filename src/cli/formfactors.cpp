@@ -225,10 +225,11 @@ int formfactors(const FormFactorsOptions& options) {
 }  // namespace
 
 void add_formfactors(CLI::App& app, Command& chosen) {
-    auto* const command = app.add_subcommand("formfactors", "view factors, light or no light");
+    auto& command = add_command(app, "formfactors", "view factors, light or no light");
     const auto options = std::make_shared<FormFactorsOptions>();
-    add_formfactors_options(*command, *options);
-    command->callback([&chosen, options] { chosen = [options] { return formfactors(*options); }; });
+    add_formfactors_options(command, *options);
+    on_chosen(command,
+              [&chosen, options] { chosen = [options] { return formfactors(*options); }; });
 }
 
 }  // namespace hemirad

@@ -16,13 +16,6 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string_view> kFormats{"csv", "view3d", "view3d-sparse"};
 
-/// Given any number of times, a name each time.
-void add_names(CLI::App& command, const OptionText& text, std::vector<std::string>& names) {
-    command.add_option(text.names, names, text.meaning)
-        ->type_name(text.placeholder)
-        ->allow_extra_args(false);
-}
-
 void add_file_options(CLI::App& command, FormFactorsOptions& options) {
     add_scene(command, options.scene);
     add_text(command, {"-o,--output", "FILE", "the factors [standard output]"}, options.output);
@@ -41,9 +34,10 @@ void add_choice_options(CLI::App& command, FormFactorsOptions& options) {
     add_names(command,
               {"--blockers-only", "NAME", "this surface hides others, no more; may be repeated"},
               options.blockers_only);
-    command.add_flag("--per-patch", options.per_patch, "rows and columns are patches, #0, #1, ...");
-    command.add_flag("--enforce", options.enforce,
-                     "least squares: A_i F_ij = A_j F_ji, and rows that sum to 1");
+    add_flag(command, "--per-patch", options.per_patch,
+             "rows and columns are patches, #0, #1, ...");
+    add_flag(command, "--enforce", options.enforce,
+             "least squares: A_i F_ij = A_j F_ji, and rows that sum to 1");
 }
 
 std::optional<double> target_of(Quality quality) {
@@ -62,18 +56,18 @@ void add_accuracy_options(CLI::App& command, FormFactorsOptions& options) {
         command,
         "no target, 1e-3, 1e-4 or 1e-5 [medium; draft where hemispheres are chosen by hand]",
         options.quality);
-    target->excludes(quality);
-    command.final_callback([&options, resolution, samples, target, quality] {
-        const bool by_hand = resolution->count() + samples->count() > 0;
-        if (target->count() == 0 && (quality->count() > 0 || !by_hand))
+    exclude(target, quality);
+    on_understood(command, [&options, resolution, samples, target, quality] {
+        const bool by_hand = is_given(resolution) || is_given(samples);
+        if (!is_given(target) && (is_given(quality) || !by_hand))
             options.factors.target_error = target_of(options.quality);
     });
     add_mesh_options(command, options.mesh);
-    command.get_option("--patch-size")
-        ->description("longest edge of a patch; inf: every polygon is one patch [inf]");
+    describe(command, "--patch-size",
+             "longest edge of a patch; inf: every polygon is one patch [inf]");
 }
 
-void require(bool holds, const std::string& otherwise) {
+void insist(bool holds, const std::string& otherwise) {
     if (!holds) throw InputError("hemirad: " + otherwise);
 }
 
@@ -94,16 +88,16 @@ void add_formfactors_options(CLI::App& command, FormFactorsOptions& options) {
     add_accuracy_options(command, options);
     add_array_options(command, options.device, options.compute_units, options.factors.pe_array);
     add_kernels(command, options.factors.kernels_dir);
-    command.add_flag("-q,--quiet", options.quiet, "say nothing but warnings and faults");
-    command.add_flag("--no-progress", options.no_progress, "no progress bar or lines");
+    add_flag(command, "-q,--quiet", options.quiet, "say nothing but warnings and faults");
+    add_flag(command, "--no-progress", options.no_progress, "no progress bar or lines");
 }
 
 void check_formfactors_options(const FormFactorsOptions& options) {
     const bool is_square = options.from.empty() && options.receivers_only.empty();
-    require(options.format == FactorFormat::csv || is_square,
-            "--format " + std::string(kFormats[std::size_t(options.format)]) +
-                ": a square matrix, not with --from or --receivers-only");
-    require(!options.enforce || options.from.empty(), "--enforce: needs all rows, not with --from");
+    insist(options.format == FactorFormat::csv || is_square,
+           "--format " + std::string(kFormats[std::size_t(options.format)]) +
+               ": a square matrix, not with --from or --receivers-only");
+    insist(!options.enforce || options.from.empty(), "--enforce: needs all rows, not with --from");
     std::vector<fs::path> files;
     if (options.output) check_output_ending(options), files.push_back(*options.output);
     if (options.report) {

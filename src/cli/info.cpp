@@ -160,16 +160,17 @@ int print_info(InfoOptions options, std::ostream& out) {
 }  // namespace
 
 void add_info(CLI::App& app, Command& chosen) {
-    auto* const command =
-        app.add_subcommand("info", "what a scene holds and what the solver will therefore build");
+    auto& command =
+        add_command(app, "info", "what a scene holds and what the solver will therefore build");
     const auto options = std::make_shared<InfoOptions>();
-    add_scene(*command, options->scene);
-    add_mesh_options(*command, options->mesh);
-    add_element_size(*command, options->mesh);
-    add_resolution(*command, options->resolution);
-    add_lights(*command, options->lights);
-    command->callback(
-        [&chosen, options] { chosen = [options] { return print_info(*options, std::cout); }; });
+    add_scene(command, options->scene);
+    add_mesh_options(command, options->mesh);
+    add_element_size(command, options->mesh);
+    add_resolution(command, options->resolution);
+    add_lights(command, options->lights);
+    on_chosen(command, [&chosen, options] {
+        chosen = [options] { return print_info(*options, std::cout); };
+    });
 }
 
 }  // namespace hemirad

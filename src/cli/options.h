@@ -1,15 +1,29 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "cli/option_values.h"
+
+// CLI/CLI.hpp costs each file that reads it seconds to compile: it stays behind these functions.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace hemirad {
 
 /// What main() runs once the command line is understood; returns the exit code.
 using Command = std::function<int()>;
+
+CLI::App& add_command(CLI::App& app, const std::string& name, const std::string& meaning);
+
+/// Called when the arguments after the command's name are understood.
+void on_chosen(CLI::App& command, std::function<void()> choose);
+
+/// Called when all of the command line is understood, whichever command it names.
+void on_understood(CLI::App& command, std::function<void()> conclude);
 
 /// How an option appears in --help.
 struct OptionText {
@@ -30,5 +44,26 @@ CLI::Option* add_text(CLI::App& command, const OptionText& text, Text& target) {
         target = Text(std::string(value.text));
     });
 }
+
+/// Given any number of times, a name each time.
+CLI::Option* add_names(CLI::App& command, const OptionText& text, std::vector<std::string>& names);
+
+/// Arguments without an option's name, any number of them.
+CLI::Option* add_files(CLI::App& command, const OptionText& text, std::vector<std::string>& files);
+
+CLI::Option* add_flag(CLI::App& command, const std::string& names, bool& flag,
+                      const std::string& meaning);
+CLI::Option* add_flag(CLI::App& command, const std::string& names, std::function<void()> set,
+                      const std::string& meaning);
+
+void require(CLI::Option* option);
+void exclude(CLI::Option* option, CLI::Option* other);
+bool is_given(const CLI::Option* option);
+
+/// What --help says of an option in place of what it said so far.
+void describe(CLI::App& command, const std::string& option, const std::string& meaning);
+
+/// Stops as for two options that exclude each other.
+[[noreturn]] void reject_both(const std::string& option, const std::string& other);
 
 }  // namespace hemirad

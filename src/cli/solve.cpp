@@ -300,15 +300,15 @@ int solve(SolveOptions options) {
 }  // namespace
 
 void add_solve(CLI::App& app, Command& chosen) {
-    auto* const command = app.add_subcommand("solve", "a scene to its lightmap");
+    auto& command = add_command(app, "solve", "a scene to its lightmap");
     const auto options = std::make_shared<SolveOptions>();
-    add_solve_options(*command, *options);
-    command->callback([&chosen, options] {
+    add_solve_options(command, *options);
+    on_chosen(command, [&chosen, options] {
         options->solver.stop_every = options->snapshots.shots;
         options->solver.timed = options->verbose || options->report.has_value();
         if (options->target_error &&
             (options->snapshots.shots > 0 || options->snapshots.seconds > 0))
-            throw CLI::ExcludesError("--snapshot-every", "--target-error");
+            reject_both("--snapshot-every", "--target-error");
         if (options->target_error)
             options->solver.tolerance =
                 std::min(options->solver.tolerance, *options->target_error / 4);

@@ -42,11 +42,11 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
                   {"--target-error", "E",
                    "finer until the irradiance of these patches is off by E of its mean, RMS"},
                   [&](const OptionValue& value) { options.target_error = fraction(value); });
-    target->excludes(quality);
-    command.add_flag("--estimate-error", options.estimate_error,
-                     "by a second solution: into the report, and into the EXR as layer error");
-    target->excludes(add_resolution(command, solver.resolution));
-    target->excludes(add_shooter_samples(command, solver.shooter_samples));
+    exclude(target, quality);
+    add_flag(command, "--estimate-error", options.estimate_error,
+             "by a second solution: into the report, and into the EXR as layer error");
+    exclude(target, add_resolution(command, solver.resolution));
+    exclude(target, add_shooter_samples(command, solver.shooter_samples));
     add_value(command,
               {"--form-factor", "count|analytic",
                "proxels counted, or closed form times visible fraction [analytic]"},
@@ -131,8 +131,8 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
               [&](const OptionValue& value) {
                   options.quantity = static_cast<Quantity>(one_of(value, kQuantities));
               });
-    command.add_flag_callback(
-        "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
+    add_flag(
+        command, "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
     add_lights(command, options.solver.parts.lights);
     add_layers(command, options);
     add_value(command,
@@ -217,9 +217,9 @@ std::string layers_text(const SolveOptions& options) {
 
 void add_talk_options(CLI::App& command, SolveOptions& options) {
     auto* const quiet =
-        command.add_flag("-q,--quiet", options.quiet, "say nothing but warnings and faults");
-    command.add_flag("-v,--verbose", options.verbose, "say more")->excludes(quiet);
-    command.add_flag("--no-progress", options.no_progress, "no progress bar or lines");
+        add_flag(command, "-q,--quiet", options.quiet, "say nothing but warnings and faults");
+    exclude(add_flag(command, "-v,--verbose", options.verbose, "say more"), quiet);
+    add_flag(command, "--no-progress", options.no_progress, "no progress bar or lines");
 }
 
 }  // namespace
@@ -235,7 +235,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
 }
 
 void add_scene(CLI::App& command, std::filesystem::path& scene) {
-    add_text(command, {"SCENE", "", "a .gltf, .glb, .obj or .vs3 file"}, scene)->required();
+    require(add_text(command, {"SCENE", "", "a .gltf, .glb, .obj or .vs3 file"}, scene));
 }
 
 CLI::Option* add_quality(CLI::App& command, const std::string& meaning, Quality& quality) {

@@ -197,7 +197,7 @@ class Sweep {
 };
 
 void add_sweep_options(CLI::App& command, SweepOptions& options) {
-    command.add_option("SCENE", options.scenes, "scenes to sweep [the two halls]");
+    add_files(command, {"SCENE", "", "scenes to sweep [the two halls]"}, options.scenes);
     add_text(command,
              {"-o,--output", "FILE.csv",
               "a row a machine; goes on where it ended "
@@ -210,18 +210,19 @@ void add_sweep_options(CLI::App& command, SweepOptions& options) {
     add_value(command, {"--patch-size", "S", "longest edge of a patch, m [0.43 for the halls]"},
               [&](const OptionValue& value) { options.patch_size = positive_or_infinite(value); });
     add_device(command, options.device);
-    command.add_flag("--smoke", options.smoke, "few small points, and check the CSV's shape");
-    command.add_flag("-q,--quiet", options.quiet, "no progress");
+    add_flag(command, "--smoke", options.smoke, "few small points, and check the CSV's shape");
+    add_flag(command, "-q,--quiet", options.quiet, "no progress");
 }
 
 }  // namespace
 
 void add_sweep(CLI::App& app, Command& chosen) {
-    auto* const command =
-        app.add_subcommand("sweep", "time and counts of single shots on many PE arrays, as CSV");
+    auto& command =
+        add_command(app, "sweep", "time and counts of single shots on many PE arrays, as CSV");
     const auto options = std::make_shared<SweepOptions>();
-    add_sweep_options(*command, *options);
-    command->callback([&chosen, options] { chosen = [options] { return Sweep(*options).run(); }; });
+    add_sweep_options(command, *options);
+    on_chosen(command,
+              [&chosen, options] { chosen = [options] { return Sweep(*options).run(); }; });
 }
 
 }  // namespace hemirad

@@ -147,19 +147,19 @@ void add_tradeoff_options(CLI::App& command, TradeoffOptions& options) {
              options.output);
     add_mesh_options(command, options.mesh);
     add_device(command, options.device);
-    command.add_flag("--quick", options.quick, "few settings of few proxels");
-    command.add_flag("-q,--quiet", options.quiet, "no progress");
+    add_flag(command, "--quick", options.quick, "few settings of few proxels");
+    add_flag(command, "-q,--quiet", options.quiet, "no progress");
 }
 
 }  // namespace
 
 void add_tradeoff(CLI::App& app, Command& chosen) {
-    auto* const command = app.add_subcommand(
-        "tradeoff", "error against time and samples, of form factors and of solves, as CSV");
+    auto& command = add_command(
+        app, "tradeoff", "error against time and samples, of form factors and of solves, as CSV");
     const auto options = std::make_shared<TradeoffOptions>();
-    add_tradeoff_options(*command, *options);
-    command->callback(
-        [&chosen, options] { chosen = [options] { return Tradeoff(*options).run(); }; });
+    add_tradeoff_options(command, *options);
+    on_chosen(command,
+              [&chosen, options] { chosen = [options] { return Tradeoff(*options).run(); }; });
 }
 
 }  // namespace hemirad
