@@ -52,6 +52,10 @@ CLI::Option* add_flag(CLI::App& command, const std::string& names, std::function
 
 void require(CLI::Option* option) { option->required(); }
 
+void need(CLI::App& command, CLI::Option* option, const std::string& other) {
+    option->needs(command.get_option(other));
+}
+
 void exclude(CLI::Option* option, CLI::Option* other) { option->excludes(other); }
 
 bool is_given(const CLI::Option* option) { return option->count() > 0; }

@@ -58,6 +58,7 @@ CLI::Option* add_flag(CLI::App& command, const std::string& names, std::function
 
 void require(CLI::Option* option);
 void exclude(CLI::Option* option, CLI::Option* other);
+void need(CLI::App& command, CLI::Option* option, const std::string& other);
 bool is_given(const CLI::Option* option);
 
 /// What --help says of an option in place of what it said so far.

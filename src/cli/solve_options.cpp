@@ -83,8 +83,8 @@ void add_chart_options(CLI::App& command, ChartSettings& charts) {
               [&](const OptionValue& value) {
                   charts.source = static_cast<ChartSource>(one_of(value, kChartSources));
               });
-    command.add_flag("--flip-v", charts.flip_v,
-                     "V runs up from the lightmap's bottom row, not down from its top [off]");
+    add_flag(command, "--flip-v", charts.flip_v,
+             "V runs up from the lightmap's bottom row, not down from its top [off]");
 }
 
 void add_stop_options(CLI::App& command, SolverSettings& solver) {
@@ -143,10 +143,10 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
                   options.snapshots = snapshot_interval(value);
                   options.snapshots.kept = kept;
               });
-    command
-        .add_flag("--keep-snapshots", options.snapshots.kept,
-                  "each also as NAME-SHOTS.exr, which hemirad view plays")
-        ->needs("--snapshot-every");
+    need(command,
+         add_flag(command, "--keep-snapshots", options.snapshots.kept,
+                  "each also as NAME-SHOTS.exr, which hemirad view plays"),
+         "--snapshot-every");
 }
 
 std::uint32_t lanes(const OptionValue& value) {

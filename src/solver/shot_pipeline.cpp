@@ -36,11 +36,12 @@ std::uint64_t list_capacity(std::uint64_t stride) {
     return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
 }
 
-// Rows of form factors that so many bytes hold, 4 bytes a patch, beside the one of the shot; at
-// most one for each patch.
-std::uint32_t row_capacity(std::uint32_t patches, std::uint64_t stride, std::uint64_t row_bytes) {
-    const std::uint64_t rows = std::max<std::uint64_t>(row_bytes / (4 * stride), 1);
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, rows - 1));
+// Rows of form factors that so many bytes hold, 4 bytes a patch, beside those of a salvo; at most
+// one for each patch.
+std::uint32_t row_capacity(std::uint32_t patches, std::uint64_t stride, std::uint64_t row_bytes,
+                           std::uint32_t salvo) {
+    const std::uint64_t rows = std::max<std::uint64_t>(row_bytes / (4 * stride), salvo);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, rows - salvo));
 }
 
 std::string definition(const char* name, std::uint64_t value) {
@@ -103,12 +104,21 @@ device::Shot first_shot() {
     return shot;
 }
 
-// Kernels index the patch database with signed 32-bit integers.
-void require_addressable(const PatchArrays& patches) {
-    const std::uint64_t coordinates = std::uint64_t{3} * patches.corner_count * patches.stride;
-    if (coordinates > std::numeric_limits<std::int32_t>::max())
+// Kernels index the patch database, and what a salvo's stations hold of it, with signed 32-bit
+// integers.
+void require_addressable(const PatchArrays& patches, std::uint32_t salvo, std::uint64_t slots,
+                         std::uint64_t lists) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    const std::uint64_t stride = patches.stride;
+    if (3 * patches.corner_count * stride > kMost)
         throw InputError(std::to_string(patches.patch_count) +
                          " patches are more than can be addressed: raise --patch-size");
+    const std::uint64_t largest =
+        std::max({slots, lists, list_capacity(stride), kFactorKinds * stride, stride + kCountsGap});
+    if (salvo * largest > kMost)
+        throw InputError("--salvo " + std::to_string(salvo) + ": " +
+                         std::to_string(salvo * largest) +
+                         " elements of a buffer are more than can be addressed");
 }
 
 }  // namespace
@@ -188,7 +198,8 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t analytic =
         mode == FormFactorMode::analytic ? stride * 4 * (kFactorKinds + 2) + plane : 0;
     const std::uint64_t rows =
-        4 * ((row_capacity(shooters, stride, row_bytes) + salvo) * (stride + 1) + shooter_stride);
+        4 * ((row_capacity(shooters, stride, row_bytes, salvo) + salvo) * (stride + 1) +
+             shooter_stride);
     return geometry + radiosity + groups + plane + reduction + rows +
            salvo * (projection + lists + analytic);
 }
@@ -208,14 +219,16 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       depth_(stack_depth(stride_, stack_count_)),
       row_capacity_(row_capacity(
           shooters.first_patch.empty() ? patches.patch_count : shooters.polygons.patch_count,
-          stride_, settings.row_bytes)),
+          stride_, settings.row_bytes, salvo_)),
       disk_proxels_(disk_proxel_count(resolution_)),
       mode_(settings.form_factor),
       two_levels_(!shooters.first_patch.empty()),
       apart_(settings.apart),
       tolerance_(static_cast<float>(settings.tolerance)),
       samples_(samples_of(settings, shooter_stride_)) {
-    require_addressable(patches);
+    require_addressable(patches, salvo_, std::uint64_t{stack_count_} * depth_,
+                        tile_count_ * std::max<std::uint64_t>(
+                                          stack_count_, array_.tile_width * array_.tile_height));
     require_countable(disk_proxels_, resolution_, samples_);
     build_kernels(device, settings, patches.corner_count);
     shot_ = acu_.plural(std::vector(member_count(), first_shot()));

@@ -44,7 +44,7 @@ struct PipelineSettings {
     FormFactorMode form_factor = FormFactorMode::count;
     NearPairs near_pairs;  ///< for FormFactorMode::analytic; may be empty
     double tolerance = 1e-3;
-    std::uint32_t salvo = 1;      ///< shooters that look and shoot at once, up to 31
+    std::uint32_t salvo = 1;      ///< shooters that look and shoot at once, up to kMostSalvo
     std::uint64_t row_bytes = 0;  ///< for rows of form factors, which spare a shooter's next shots
     mp1map::PeArrayRequest pe_array;
     std::optional<std::filesystem::path> kernels_dir;

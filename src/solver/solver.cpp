@@ -19,6 +19,7 @@ constexpr std::uint64_t kDefaultRowBytes = std::uint64_t{1} << 30;
 constexpr std::uint64_t kMostShootersPerRow = 100;
 constexpr std::uint32_t kSalvo = 8;
 constexpr std::uint64_t kLeastShootersForSalvo = 1024, kMostPatchesForSalvo = 1u << 18;
+constexpr std::uint32_t kFinestForSalvo = 2048;
 // The device counts them in 32 bits.
 constexpr std::uint64_t kMostShots = std::numeric_limits<std::uint32_t>::max();
 
@@ -87,7 +88,8 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
     result.form_factor = settings.form_factor;
     set_shooter_sampling(result, mesh, settings);
     result.tolerance = settings.tolerance;
-    result.salvo = usable_salvo(settings.salvo, mesh.shooter_count(), mesh.patches.size());
+    result.salvo = usable_salvo(settings.salvo, mesh.shooter_count(), mesh.patches.size(),
+                                settings.resolution);
     result.row_bytes =
         usable_row_bytes(settings.row_bytes, mesh.shooter_count(), mesh.patches.size(), device);
     result.pe_array = settings.pe_array;
@@ -137,9 +139,11 @@ std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::
     return wanted || worthwhile ? bytes : 0;
 }
 
-std::uint32_t usable_salvo(std::uint32_t wanted, std::uint64_t shooters, std::uint64_t patches) {
+std::uint32_t usable_salvo(std::uint32_t wanted, std::uint64_t shooters, std::uint64_t patches,
+                           std::uint32_t resolution) {
     if (wanted != 0) return std::min(wanted, kMostSalvo);
-    return shooters >= kLeastShootersForSalvo && patches <= kMostPatchesForSalvo ? kSalvo : 1;
+    const bool fits = patches <= kMostPatchesForSalvo && resolution <= kFinestForSalvo;
+    return shooters >= kLeastShootersForSalvo && fits ? kSalvo : 1;
 }
 
 ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& settings,

@@ -52,11 +52,13 @@ std::uint64_t most_bands(const mp1map::DeviceSummary& device);
 std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,
                                std::uint64_t patches, const mp1map::DeviceSummary& device);
 
-/// Shooters that look and shoot at once: as many as wanted, at most kMostSalvo; 0: by the mesh,
-/// alone a property of which it is, so that bits do not depend on the device. 8 cost a thousandth
-/// more shots, and 100 bytes a patch each. Where there are fewer than 1,024 shooters time does not
-/// matter and the loop is the paper's, one at a time; beyond 262,144 patches memory does.
-std::uint32_t usable_salvo(std::uint32_t wanted, std::uint64_t shooters, std::uint64_t patches);
+/// Shooters that look and shoot at once: as many as wanted, at most kMostSalvo; 0: by the mesh and
+/// the resolution, so that bits do not depend on the device. 8 cost a thousandth more shots, and
+/// each 100 bytes a patch and 4 a proxel. Where there are fewer than 1,024 shooters time does not
+/// matter and the loop is the paper's, one at a time; beyond 262,144 patches or 2,048^2 proxels
+/// memory does.
+std::uint32_t usable_salvo(std::uint32_t wanted, std::uint64_t shooters, std::uint64_t patches,
+                           std::uint32_t resolution);
 constexpr std::uint32_t kMostSalvo = 15;
 
 struct Progress {

@@ -179,13 +179,25 @@ TEST(Salvos, HaveTheBitsOfARunWithRoomForTheirLists) {
     expect_equal(full.solution, room.solution);
 }
 
+// Rows that are not kept are among those that the bytes hold.
+TEST(Salvos, LeaveTheRowsWithinTheirMemory) {
+    constexpr std::uint64_t kRow = 4 * 1024, kRows = 50;
+    const auto bytes = [](std::uint64_t row_bytes) {
+        return estimated_device_bytes(1024, 1024, 4, 1, 64, FormFactorMode::count, row_bytes,
+                                      {4, 1, 16, 64, 64}, 8);
+    };
+    EXPECT_EQ(bytes(8 * kRow), bytes(0));
+    EXPECT_LE(bytes(kRows * kRow) - bytes(0), (kRows - 8) * (kRow + 4));
+}
+
 TEST(Salvos, AreOfEightUnlessTimeOrMemoryIsNoMatter) {
-    EXPECT_EQ(usable_salvo(0, 1023, 1023), 1u);
-    EXPECT_EQ(usable_salvo(0, 1024, 1024), 8u);
-    EXPECT_EQ(usable_salvo(0, 1024, 262'144), 8u);
-    EXPECT_EQ(usable_salvo(0, 262'145, 262'145), 1u);
-    EXPECT_EQ(usable_salvo(3, 10, 10), 3u);
-    EXPECT_EQ(usable_salvo(1000, 10, 10), kMostSalvo);
+    EXPECT_EQ(usable_salvo(0, 1023, 1023, 128), 1u);
+    EXPECT_EQ(usable_salvo(0, 1024, 1024, 2048), 8u);
+    EXPECT_EQ(usable_salvo(0, 1024, 262'144, 128), 8u);
+    EXPECT_EQ(usable_salvo(0, 262'145, 262'145, 128), 1u);
+    EXPECT_EQ(usable_salvo(0, 1024, 1024, 2049), 1u);
+    EXPECT_EQ(usable_salvo(3, 10, 10, 8192), 3u);
+    EXPECT_EQ(usable_salvo(1000, 10, 10, 128), kMostSalvo);
 }
 
 }  // namespace
