@@ -538,7 +538,7 @@ class Environment(CommandLine):
         self.assertTrue((self.folder / ".cache/pocl").is_dir())
 
     def test_locale_with_decimal_commas(self):
-        self.assert_done(self.solve(environment=self.variables(LC_ALL="de_DE.UTF-8")))
+        self.assert_done(self.solve(environment=os.environ | {"LC_ALL": "de_DE.UTF-8"}))
 
 
 class Questions(CommandLine):

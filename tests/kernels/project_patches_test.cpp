@@ -18,6 +18,7 @@ std::int64_t owned_by(const std::vector<int>& owners, int patch) {
     return std::count(owners.begin(), owners.end(), patch);
 }
 
+// Whole tiles, and tiles cut off by the edge of the plane; each resolution is compiled for anew.
 class ProjectPatches : public testing::TestWithParam<Shape> {
   protected:
     std::vector<int> owners_seen_by_first(const std::vector<Polygon>& polygons, int resolution) {
@@ -35,17 +36,17 @@ TEST_P(ProjectPatches, NearerPatchHidesFarther) {
     const auto floor = square({0, 0, 0}, kX, kY, 1);
     const auto far = square({0, 0, 2}, kY, kX, 1), near = square({0, 0, 1}, kY, kX, 2);
 
-    const auto owners = owners_seen_by_first({floor, far, near}, 64);
+    const auto owners = owners_seen_by_first({floor, far, near}, 100);
 
     EXPECT_EQ(owned_by(owners, 1), 0);
     // Centre of a square of side 2 at distance 1, Lambert: 4 / (pi sqrt 2) * atan(1 / sqrt 2).
-    EXPECT_NEAR(static_cast<double>(owned_by(owners, 2)) / disk_proxel_count(64), 0.5541, 5e-3);
+    EXPECT_NEAR(static_cast<double>(owned_by(owners, 2)) / disk_proxel_count(100), 0.5541, 5e-3);
 }
 
 TEST_P(ProjectPatches, ATieGoesToTheLowestPatch) {
     const auto floor = square({0, 0, 0}, kX, kY, 1), ceiling = square({0, 0, 1}, kY, kX, 2);
 
-    const auto owners = owners_seen_by_first({floor, ceiling, ceiling, ceiling}, 64);
+    const auto owners = owners_seen_by_first({floor, ceiling, ceiling, ceiling}, 100);
 
     EXPECT_GT(owned_by(owners, 1), 0);
     EXPECT_EQ(owned_by(owners, 2) + owned_by(owners, 3), 0);
@@ -60,7 +61,7 @@ TEST_P(ProjectPatches, EveryProxelInTheDiskHasOneOwner) {
 
 TEST_P(ProjectPatches, NothingEscapesFromAClosedBox) {
     for (const int patch : {0, 7, 40, 95}) {
-        Aimed aimed(box({1, 0.7, 0.3}, 4), GetParam(), 256);
+        Aimed aimed(box({1, 0.7, 0.3}, 4), GetParam(), 512);
         aimed.aim(patch);
         aimed.project();
 
@@ -71,7 +72,7 @@ TEST_P(ProjectPatches, NothingEscapesFromAClosedBox) {
 TEST_P(ProjectPatches, OwnersAgreeWithTheScalarReference) {
     std::size_t undecided = 0;
     for (const int patches : {1, 10, 1000})
-        for (const int resolution : {64, 512}) {
+        for (const int resolution : {100, 512}) {
             Aimed aimed(soup(patches, patches > 100 ? 0.2 : 0.6, patches), GetParam(), resolution);
             aimed.aim(0);
             aimed.project();
