@@ -175,7 +175,8 @@ TEST_F(WriteGltf, BandsOfItsOwnComeBack) {
     scene.materials[0] = {"paint", {0.2, 0.7}, {0, 3}, false};
     Lit a{scene, build_mesh(scene, {.patch_size = 1}), {}, {}};
     a.layout = lay_out_charts(a.mesh);
-    a.lightmap = {a.layout.width, a.layout.height, scene.bands, {}, {}};
+    const Atlas& atlas = a.layout.atlases[0];
+    a.lightmap = {atlas.width, atlas.height, scene.bands, {}, {}};
     a.lightmap.values.assign(2, std::vector<float>(a.lightmap.texel_count(), 1.0f));
 
     const Scene read = round_trip(a);
