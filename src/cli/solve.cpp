@@ -84,10 +84,11 @@ void require_few_bands(const Work& work, const SolveOptions& options,
                        const mp1map::DeviceSummary& device) {
     const auto& parts = options.solver.parts;
     const auto bands = plan_bands(work.mesh, parts).solved.size();
-    if (bands <= most_bands(device)) return;
+    const auto most = most_bands(device, mp1map::fit_pe_array(device, options.solver.pe_array));
+    if (bands <= most) return;
     throw InputError(
         work.scene.file + ": " + std::to_string(bands) + " bands to solve at once, " + device.name +
-        " takes " + std::to_string(most_bands(device)) +
+        " takes " + std::to_string(most) +
         (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 

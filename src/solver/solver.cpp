@@ -111,24 +111,27 @@ ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSe
 // choose_shooter adds up every band for each of its 64 PEs in local memory, beside 8 bytes for each
 // of a salvo and of those that may look ahead.
 constexpr std::uint64_t kReducePes = 64, kReduceBytesPerBand = 4, kReduceBytes = 16 * kMostSalvo;
-constexpr std::uint64_t kMostBands = 1024;
+// update_unshot: 16 sums of a band, which PoCL keeps for all PEs of an array on one thread's stack.
+// 26 MB of them were seen to run, 65 MB to crash.
+constexpr std::uint64_t kSumBytesPerBand = 64, kMostSumBytes = 1 << 24;
+constexpr std::uint64_t kMostBands = 512;  // more were not tried
 
 BandPlan planned(const Mesh& mesh, const SolverSettings& settings,
                  const mp1map::DeviceSummary& device) {
     BandPlan plan = plan_bands(mesh, settings.parts);
-    if (plan.solved.size() > most_bands(device))
+    const auto most = most_bands(device, mp1map::fit_pe_array(device, settings.pe_array));
+    if (plan.solved.size() > most)
         throw InputError(std::to_string(plan.solved.size()) + " bands to solve at once; " +
-                         device.name + " has local memory for " +
-                         std::to_string(most_bands(device)));
+                         device.name + " takes " + std::to_string(most));
     return plan;
 }
 
 }  // namespace
 
-std::uint64_t most_bands(const mp1map::DeviceSummary& device) {
+std::uint64_t most_bands(const mp1map::DeviceSummary& device, const mp1map::PeArray& array) {
     const std::uint64_t bytes = device.local_memory / kReducePes;
-    return std::min(bytes > kReduceBytes ? (bytes - kReduceBytes) / kReduceBytesPerBand : 0,
-                    kMostBands);
+    return std::min({bytes > kReduceBytes ? (bytes - kReduceBytes) / kReduceBytesPerBand : 0,
+                     kMostSumBytes / (kSumBytesPerBand * array.pe_count()), kMostBands});
 }
 
 std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,

@@ -44,7 +44,7 @@ struct SolverSettings {
 };
 
 /// Bands that a device can solve at once.
-std::uint64_t most_bands(const mp1map::DeviceSummary& device);
+std::uint64_t most_bands(const mp1map::DeviceSummary& device, const mp1map::PeArray& array);
 
 /// What a device can spare of the bytes asked for: up to a quarter of its memory. By default 1 GiB
 /// is asked for, and nothing is used where it holds the rows of fewer than one shooter in a

@@ -51,6 +51,7 @@ Ke 9 5 1
 newmtl cold
 Ke 0.1 0.2 0.9
 """
+QUICK = ("--resolution", "64", "--patch-size", "0.5", "--quality", "draft")
 FLOAT, HALF = 2.0 ** -22, 2.0 ** -9  # some roundings of each
 DIMMEST_HALF = 2.0 ** -22  # below 2^-14, half has steps of 2^-24
 
@@ -65,7 +66,7 @@ class Layers(CommandLine):
         self.write("scene.obj", BOX.replace("{left}", left).replace("{right}", right))
 
     def exr(self, *arguments):
-        self.assert_done(self.solve("-o", "a.exr", *arguments))
+        self.assert_done(self.run_hemirad("solve", "scene.obj", "-o", "a.exr", *QUICK, *arguments))
         return Exr(self.folder / "a.exr")
 
     def assert_sum(self, channels, layers, relative, absolute=0.0):
@@ -122,8 +123,7 @@ class Layers(CommandLine):
         self.assertGreater(walls, lamps)
 
     def test_the_header_says_what_layers_hold(self):
-        exr = self.exr("--lights", "separate", "--layers", "direct,error,position", "--quality",
-                       "draft")
+        exr = self.exr("--lights", "separate", "--layers", "direct,error,position")
         self.assertEqual('irradiance of light "left.1", reflections included, W/m^2',
                          exr.text("layer.light.left%2E1"))
         self.assertIn("W/m^2", exr.text("layer.direct"))
@@ -169,7 +169,7 @@ class Layers(CommandLine):
     def test_snapshots_hold_the_layers(self):
         arguments = ("--lights", "separate", "--layers", "direct,indirect")
         plain = self.exr(*arguments).bytes
-        self.assertEqual(plain, self.exr(*arguments, "--snapshot-every", "2").bytes)
+        self.assertEqual(plain, self.exr(*arguments, "--snapshot-every", "50").bytes)
         interim = self.exr(*arguments, "--max-shots", "3").channels()
         self.assert_sum(interim, ("light.left%2E1", "light.right"), FLOAT)
 
@@ -197,11 +197,11 @@ class BadLayers(CommandLine):
                                 says="expected")
 
     def test_more_lights_than_a_device_takes(self):
-        self.write("many.obj", many_lamps(1100))
+        self.write("many.obj", many_lamps(600))
         result = self.run_hemirad("solve", "many.obj", "--lights", "separate", "--patch-size",
                                   "inf")
-        self.assert_refused(result, "many.obj: 1100 bands to solve at once, ",
-                            says="--lights by-material tells 1 instead of 1100 lights apart")
+        self.assert_refused(result, "many.obj: 600 bands to solve at once, ",
+                            says="--lights by-material tells 1 instead of 600 lights apart")
 
 
 def many_lamps(count):

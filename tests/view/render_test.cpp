@@ -100,7 +100,7 @@ TEST(Render, APixelAtAnEdgeIsTheMeanOfWhatItShows) {
 
 TEST(Render, ALayerShowsItsOwnLightAndNoLamps) {
     LitScene lit = scene_lit_by({6});
-    lit.lightmap.layers["left"] = {{2}};
+    lit.lightmap.layers["left"].values = {{2}};
     add_material(lit, 0.5, 0.25);
     add_wall(lit, -5);
     RenderSettings settings = small(1);
@@ -112,7 +112,7 @@ TEST(Render, ALayerShowsItsOwnLightAndNoLamps) {
 TEST(Render, ALayerThatIsNotThereIsRefusedWithThoseThatAre) {
     LitScene lit = scene_lit_by({6});
     lit.exr = "lit.exr";
-    lit.lightmap.layers["left"] = {{2}};
+    lit.lightmap.layers["left"].values = {{2}};
     RenderSettings settings = small(1);
     settings.layer = "right";
 
