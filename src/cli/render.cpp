@@ -146,7 +146,7 @@ void write_radiance(const RenderOptions& options, const LitScene& lit, const Cam
 std::string write_picture(const RenderOptions& options, const Lightmap& rendered) {
     const double exposure = options.exposure.value_or(automatic_exposure(rendered));
     const Picture picture = options.false_colour
-                                ? false_colours_of(rendered, options.largest, "W/m^2")
+                                ? false_colours_of(rendered, options.largest, "irradiance, W/m^2")
                                 : picture_of(rendered, exposure);
     write_atomically(options.output, [&](std::ostream& stream) { write_png(stream, picture); });
     return options.false_colour ? "" : ", --exposure " + number_text(exposure);

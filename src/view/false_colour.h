@@ -14,7 +14,7 @@ std::span<const Colour> false_colours();
 /// Of a value between 0 and 1; what lies outside has the colour of that end.
 Colour false_colour(double value);
 
-/// The least of 1, 2, 2.5 and 5 times a power of ten that is not below the value.
+/// The least of 1, 1.5, 2, 2.5, 3, 4, 5, 6 and 8 times a power of ten that is not below the value.
 double round_above(double value);
 
 }  // namespace hemirad

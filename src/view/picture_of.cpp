@@ -17,7 +17,7 @@ namespace {
 using Rgb = std::array<unsigned char, 3>;
 
 constexpr std::uint32_t kWide = 400;  // pixels in which numbers of twice the font's size find room
-constexpr std::uint32_t kLegendHeight = 46, kBarHeight = 14, kMargin = 12;
+constexpr std::uint32_t kLegendHeight = 62, kBarHeight = 14, kMargin = 12;
 
 std::array<double, 3> shown_at(const Lightmap& rendered, std::size_t pixel) {
     const ShownBands shown = shown_bands(rendered.bands.size());
@@ -111,9 +111,9 @@ void draw_legend(Canvas& canvas, const Lightmap& rendered, double largest,
         const auto x = kMargin + static_cast<std::uint32_t>(double(length - 1) * tick / kTicks);
         for (std::uint32_t y = 0; y < 4; ++y)
             canvas.set(x, top + 4 + kBarHeight + y, {255, 255, 255});
-        const std::string number = tick_text(largest * tick / kTicks);
-        canvas.write(x, top + 4 + kBarHeight + 6, tick == kTicks ? number + " " + unit : number);
+        canvas.write(x, top + 4 + kBarHeight + 6, tick_text(largest * tick / kTicks));
     }
+    canvas.write(rendered.width / 2, top + 4 + kBarHeight + 24, unit);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ double automatic_exposure(const Lightmap& rendered);
 Picture picture_of(const Lightmap& rendered, double exposure);
 
 /// The sum of the bands as colours, with a scale below that ends at `largest`; without that at a
-/// round number above nearly all pixels. `unit` stands beside the scale.
+/// round number above nearly all pixels. `unit` stands below the scale.
 Picture false_colours_of(const Lightmap& rendered, std::optional<double> largest,
                          const std::string& unit);
 

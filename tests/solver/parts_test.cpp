@@ -195,7 +195,7 @@ TEST(Parts, ThatADeviceCannotHoldAreRefused) {
     small.local_memory = 32768;  // the least that OpenCL 1.2 allows
     mp1map::PeArray array;
     array.width = array.height = 8;
-    EXPECT_EQ(most_bands(small, array), 126u);
+    EXPECT_EQ(most_bands(small, array), 68u);
     array.width = array.height = 64;
     EXPECT_EQ(most_bands(small, array), 64u);
 

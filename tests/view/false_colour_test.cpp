@@ -32,9 +32,9 @@ TEST(FalseColour, EndsWhereTheScaleEnds) {
 }
 
 TEST(FalseColour, ScalesEndAtRoundNumbers) {
-    EXPECT_DOUBLE_EQ(round_above(0.013), 0.02);
+    EXPECT_DOUBLE_EQ(round_above(0.013), 0.015);
     EXPECT_DOUBLE_EQ(round_above(2.1), 2.5);
-    EXPECT_DOUBLE_EQ(round_above(51), 100);
+    EXPECT_DOUBLE_EQ(round_above(81), 100);
     EXPECT_DOUBLE_EQ(round_above(100), 100);
     EXPECT_DOUBLE_EQ(round_above(0), 1);
 }

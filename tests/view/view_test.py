@@ -172,7 +172,7 @@ class Render(Solved):
         self.assertGreater(red, 2 * green)  # the left wall
         red, green, blue = rows[45][86]
         self.assertGreater(green, 1.2 * red)  # the right one
-        self.assertGreater(min(rows[9][45]), 200)  # the lamp in the ceiling
+        self.assertGreater(min(rows[12][45]), 200)  # the lamp in the ceiling
 
     def test_the_only_camera_needs_no_name_and_gives_the_picture_its_shape(self):
         rows = self.picture()
