@@ -166,10 +166,13 @@ class Layers(CommandLine):
             each = [float(row[f"light.{name}.irradiance.R"]) for name in ("left%2E1", "right")]
             self.assertAlmostEqual(float(row["irradiance.R"]), sum(each), delta=1e-7)
 
-    def test_snapshots_hold_the_layers(self):
+    def test_snapshots_leave_the_layers_as_they_are(self):
         arguments = ("--lights", "separate", "--layers", "direct,indirect")
         plain = self.exr(*arguments).bytes
         self.assertEqual(plain, self.exr(*arguments, "--snapshot-every", "50").bytes)
+
+    def test_lights_add_up_after_any_shot(self):
+        arguments = ("--lights", "separate", "--layers", "direct,indirect")
         interim = self.exr(*arguments, "--max-shots", "3").channels()
         self.assert_sum(interim, ("light.left%2E1", "light.right"), FLOAT)
 
