@@ -121,24 +121,25 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
     write_lightmap(options, lightmap, attributes_of(options, solution));
 }
 
-void write_solved_scene(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+void write_solved_scene(const SolveOptions& options, const Scene& scene,
+                        const std::vector<Camera>& cameras, const Mesh& mesh,
                         const ChartLayout& layout, const Solution& solution) {
     if (!options.gltf) return;
     const auto folder = fs::absolute(*options.gltf).parent_path();
-    write_gltf(*options.gltf, scene, mesh, read_cameras(options.scene),
-               lightmap_uvs(scene, mesh, layout),
+    write_gltf(*options.gltf, scene, mesh, cameras, lightmap_uvs(scene, mesh, layout),
                rasterize(mesh, solution, layout, Quantity::irradiance),
                place_of(options.output).lexically_relative(place_of(folder)));
 }
 
-void write_interim_picture(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+void write_interim_picture(const SolveOptions& options, const Scene& scene,
+                           const std::vector<Camera>& cameras, const Mesh& mesh,
                            const ChartLayout& layout, const Solution& solution) {
     auto attributes = attributes_of(options, solution);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
     const auto lit = with_ambient(mesh, solution);
     const auto lightmap = rasterize(mesh, lit, layout, options.quantity);
     write_lightmap(options, lightmap, attributes);
-    write_solved_scene(options, scene, mesh, layout, lit);
+    write_solved_scene(options, scene, cameras, mesh, layout, lit);
     if (options.snapshots.kept)
         write_exr(snapshot_file(options.output, solution.shots), lightmap, attributes,
                   options.pixels);
