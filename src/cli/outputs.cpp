@@ -127,19 +127,20 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
                        attributes_of(options, solution));
 }
 
-void write_solved_scene(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+void write_solved_scene(const SolveOptions& options, const Scene& scene,
+                        const std::vector<Camera>& cameras, const Mesh& mesh,
                         const ChartLayout& layout, const Solution& solution) {
     if (!options.gltf) return;
     const auto folder = fs::absolute(*options.gltf).parent_path();
     ChartLayout downwards = layout;  // as V always runs in glTF
     downwards.flip_v = false;
-    write_gltf(*options.gltf, scene, mesh, read_cameras(options.scene),
-               lightmap_uvs(scene, mesh, downwards),
+    write_gltf(*options.gltf, scene, mesh, cameras, lightmap_uvs(scene, mesh, downwards),
                rasterize(mesh, solution, layout, Quantity::irradiance),
                place_of(options.output).lexically_relative(place_of(folder)));
 }
 
-void write_interim_picture(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+void write_interim_picture(const SolveOptions& options, const Scene& scene,
+                           const std::vector<Camera>& cameras, const Mesh& mesh,
                            const ChartLayout& layout, const Solution& solution) {
     auto attributes = attributes_of(options, solution);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
@@ -151,7 +152,7 @@ void write_interim_picture(const SolveOptions& options, const Scene& scene, cons
             write_exr(snapshot_file(atlas_file(options.output, atlas), solution.shots), lightmap,
                       attributes, options.pixels);
     }
-    write_solved_scene(options, scene, mesh, layout, lit);
+    write_solved_scene(options, scene, cameras, mesh, layout, lit);
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

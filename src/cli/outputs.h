@@ -8,6 +8,7 @@
 
 #include "cli/solve_options.h"
 #include "lightmap/chart_layout.h"
+#include "scene/camera.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 #include "solver/solution.h"
@@ -36,11 +37,13 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
                    const Solution& solution, const Solution* error = nullptr);
 
 /// As write_picture() and write_solved_scene(), with_ambient(); the lightmap's header says so.
-void write_interim_picture(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+void write_interim_picture(const SolveOptions& options, const Scene& scene,
+                           const std::vector<Camera>& cameras, const Mesh& mesh,
                            const ChartLayout& layout, const Solution& solution);
 
-/// The scene with its irradiance, if the options ask for it.
-void write_solved_scene(const SolveOptions& options, const Scene& scene, const Mesh& mesh,
+/// The scene with its irradiance and the cameras, if the options ask for it.
+void write_solved_scene(const SolveOptions& options, const Scene& scene,
+                        const std::vector<Camera>& cameras, const Mesh& mesh,
                         const ChartLayout& layout, const Solution& solution);
 
 /// A warning for each band whose light is so weak that the lightmap's pixels lose digits of all of

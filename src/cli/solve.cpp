@@ -33,6 +33,7 @@ namespace {
 /// Everything known before the first shot. The mesh is the scene's; both are needed to the end.
 struct Work {
     Scene scene;
+    std::vector<Camera> cameras;  ///< for those who look at the solved scene
     Mesh mesh;
     ChartLayout layout;
 };
@@ -51,6 +52,7 @@ Work prepare(SolveOptions& options) {
     check_outputs(options);
     Work work;
     work.scene = read_scene(options.scene);
+    if (options.gltf) work.cameras = read_cameras(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(work.scene);
     work.mesh = build_mesh(work.scene, options.mesh);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
@@ -113,7 +115,8 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
         shot_clock.note(progress);
         display.show(progress.shots, progress.unshot_fraction);
         if (snapshots.due(progress))
-            write_interim_picture(options, work.scene, work.mesh, work.layout, solver.solution());
+            write_interim_picture(options, work.scene, work.cameras, work.mesh, work.layout,
+                                  solver.solution());
         return !interrupts.requested();
     });
 }
@@ -248,7 +251,7 @@ void write_results(const Work& work, const SolveOptions& options, const Outcome&
     const bool layer = options.estimate_error && outcome.error;
     write_picture(options, work.mesh, work.layout, outcome.solution,
                   layer ? &outcome.error->by_patch : nullptr);
-    write_solved_scene(options, work.scene, work.mesh, work.layout, outcome.solution);
+    write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout, outcome.solution);
     if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
 }
 

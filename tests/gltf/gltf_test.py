@@ -93,6 +93,18 @@ class Gltf(unittest.TestCase):
         self.assertEqual(0, result.returncode, result.stderr)
         self.assertEqual([], faults_of(self.folder / "solved.glb"))
 
+    def test_a_faulty_camera_is_refused_before_the_work_begins(self):
+        for camera, says in (({"type": "perspective", "perspective": {"yfov": -1, "znear": 1}},
+                              "cameras/0: yfov is no number above 0"),
+                             ({"type": "perspective", "perspective": {"yfov": 4, "znear": 1}},
+                              "cameras/0: its node or its yfov shows nothing"),
+                             (7, "cameras/0: is not an object")):
+            (self.folder / "seen.gltf").write_bytes(scenes.gltf(
+                nodes=[{"mesh": 0, "camera": 0}], cameras=[camera]))
+            result = self.solve("seen.gltf", "-o", "solved.glb")
+            self.assertEqual((1, f"seen.gltf: {says}\n"), (result.returncode, result.stderr))
+            self.assertFalse((self.folder / "solved.exr").exists())
+
     def test_the_validator_sees_faults(self):
         self.solve("scene.obj", "-o", "bad.gltf")
         bad = json.loads((self.folder / "bad.gltf").read_text(encoding="utf-8"))
