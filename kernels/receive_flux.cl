@@ -12,13 +12,22 @@ __kernel void receive_flux(const __global Shot* salvo, const __global float* sho
                            __global float* block_unshot) {
     if (!is_shooting(salvo)) return;
     const int size = salvo_size(salvo), shooters = shooter_count(salvo);
+    int owned[SALVO];
+    for (int station = 0; station < SALVO; ++station) owned[station] = 0;
     for (int block = get_global_id(0); block < stride / kReduceBlock;
          block += get_global_size(0)) {
-        real_v form_factor[(SALVO + 1) * BLOCK_VECTORS];
-        salvo_form_factors(salvo, shooters, size, proxel_counts, disk_proxels, factors, stride, rows,
-                           row_capacity, block, form_factor);
-        receive_block(form_factor, shooters, shot_flux, stride, block, received, received_rest);
-        reduce_block(salvo, shooters, form_factor, shot_flux, block, stride, unshot, reflectance,
-                     band_weight, summaries, block_unshot);
+        Reduction reduction;
+        begin_reduction(salvo, shooters, block, &reduction);
+        for (int step = 0; step < BLOCK_VECTORS; ++step) {
+            const int patch = block * kReduceBlock + step * LANES;
+            real_v form_factor[SALVO];
+            salvo_form_factors(salvo, shooters, size, proxel_counts, disk_proxels, factors, stride,
+                               rows, row_capacity, patch, form_factor, owned);
+            receive(form_factor, shooters, shot_flux, stride, patch, received, received_rest);
+            reduce(salvo, shooters, form_factor, shot_flux, patch, step, stride, unshot,
+                   reflectance, band_weight, &reduction);
+        }
+        end_reduction(&reduction, block, summaries, block_unshot);
     }
+    add_owned(owned, stride, proxel_counts);
 }

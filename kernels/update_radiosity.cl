@@ -36,65 +36,59 @@ static real_v take_counts(__global int* proxel_count, float proxels_shot, int pa
 
 #endif
 
-// A shooter's form factors to a block of patches; those that were not known are spent. Returns the
-// proxels that the block owns.
-static int form_factors_to(const __global Shot* shot, __global int* proxel_count, int disk_proxels,
-                           __global float* factors, int stride, const __global float* row,
-                           int block, real_v* form_factor) {
-    const float proxels_shot = disk_proxels * max(shot->part_count, 1u);
-    int owned = 0;
-    for (int step = 0; step < BLOCK_VECTORS; ++step) {
-        const int patch = block * kReduceBlock + step * LANES;
-        if (shot->row_known)
-            form_factor[step] = load_v(patch, row);
-        else
+// A member's form factors to LANES patches; those that were not known are spent.
+static real_v form_factor_to_patches(const __global Shot* shot, __global int* proxel_count,
+                                     int disk_proxels, __global float* factors, int stride,
+                                     const __global float* row, int patch, int* owned) {
+    if (shot->row_known) return load_v(patch, row);
 #ifdef FORM_FACTOR_ANALYTIC
-            form_factor[step] = take_form_factors(shot, factors, stride, patch);
+    return take_form_factors(shot, factors, stride, patch);
 #else
-            form_factor[step] = take_counts(proxel_count, proxels_shot, patch, &owned);
+    const float proxels_shot = disk_proxels * max(shot->part_count, 1u);
+    return take_counts(proxel_count, proxels_shot, patch, owned);
 #endif
-    }
-    return owned;
 }
 
-static void keep_block(const real_v* form_factor, int block, __global float* row) {
-    for (int step = 0; step < BLOCK_VECTORS; ++step)
-        *real_vectors(row + block * kReduceBlock + step * LANES) = form_factor[step];
-}
-
-// Of the first `shooters` members to a block of patches: [shooter][step]. New rows below row_end are
-// kept, of those that look ahead as well. Proxels that the block owns are added to each member's.
+// Of the first `shooters` members to LANES patches: [shooter]. New rows below row_end are kept, of
+// those that look ahead as well. owned: [station], proxels that the patches own.
+// No more than these vectors are kept at a time: PoCL keeps the private variables of all PEs of an
+// array on one thread's stack.
 static void salvo_form_factors(const __global Shot* salvo, int shooters, int size,
                                __global int* proxel_counts, int disk_proxels,
                                __global float* factors, int stride, __global float* rows,
-                               int row_end, int block, real_v* form_factor) {
+                               int row_end, int patch, real_v* form_factor, int* owned) {
     int station = 0;
     for (int member = 0; member < size; ++member) {
         const __global Shot* shot = salvo + member;
-        __global int* proxel_count = proxel_counts + station * (stride + kCountsGap);
         __global float* row = rows + (size_t)shot->row * stride;
-        real_v* own = form_factor + min(member, shooters) * BLOCK_VECTORS;
-        const int owned =
-            form_factors_to(shot, proxel_count, disk_proxels,
-                            factors + station * kFactorKinds * stride, stride, row, block, own);
-        if (owned != 0) atomic_add(proxel_count + stride + 2, owned);
+        const real_v own = form_factor_to_patches(
+            shot, proxel_counts + station * (stride + kCountsGap), disk_proxels,
+            factors + station * kFactorKinds * stride, stride, row, patch, owned + station);
+        if (member < shooters) form_factor[member] = own;
         if (shot->row_known) continue;
-        if (shot->row < row_end) keep_block(own, block, row);
+        if (shot->row < row_end) *real_vectors(row + patch) = own;
         ++station;
     }
 }
 
-static void receive_block(const real_v* form_factor, int size, const __global float* shot_flux,
-                          int stride, int block, __global float* received,
-                          __global float* received_rest) {
-    for (int step = 0; step < BLOCK_VECTORS; ++step)
-        for (int band = 0; band < BANDS; ++band) {
-            const int at = band * stride + block * kReduceBlock + step * LANES;
-            real_v sum = load_v(at, received), rest = load_v(at, received_rest);
-            add_compensated(&sum, &rest, flux_to(form_factor, size, shot_flux, step, band));
-            *real_vectors(received + at) = sum;
-            *real_vectors(received_rest + at) = rest;
-        }
+static void receive(const real_v* form_factor, int size, const __global float* shot_flux,
+                    int stride, int patch, __global float* received,
+                    __global float* received_rest) {
+    for (int band = 0; band < BANDS; ++band) {
+        const int at = band * stride + patch;
+        real_v sum = load_v(at, received), rest = load_v(at, received_rest);
+        add_compensated(&sum, &rest, flux_to(form_factor, size, shot_flux, band));
+        *real_vectors(received + at) = sum;
+        *real_vectors(received_rest + at) = rest;
+    }
+}
+
+// To the spare counts of each station, see choose_shooter.cl.
+static void add_owned(const int* owned, int stride, __global int* proxel_counts) {
+    for (int station = 0; station < SALVO; ++station)
+        if (owned[station] != 0)
+            atomic_add(proxel_counts + station * (stride + kCountsGap) + stride + 2,
+                       owned[station]);
 }
 
 __kernel void update_radiosity(const __global Shot* salvo, const __global float* shot_flux,
@@ -103,11 +97,16 @@ __kernel void update_radiosity(const __global Shot* salvo, const __global float*
                                __global float* received, __global float* received_rest) {
     if (!is_shooting(salvo)) return;
     const int size = salvo_size(salvo), shooters = shooter_count(salvo);
+    int owned[SALVO];
+    for (int station = 0; station < SALVO; ++station) owned[station] = 0;
     for (int block = get_global_id(0); block < stride / kReduceBlock;
-         block += get_global_size(0)) {
-        real_v form_factor[(SALVO + 1) * BLOCK_VECTORS];
-        salvo_form_factors(salvo, shooters, size, proxel_counts, disk_proxels, factors, stride, rows,
-                           INT_MAX, block, form_factor);
-        receive_block(form_factor, shooters, shot_flux, stride, block, received, received_rest);
-    }
+         block += get_global_size(0))
+        for (int step = 0; step < BLOCK_VECTORS; ++step) {
+            const int patch = block * kReduceBlock + step * LANES;
+            real_v form_factor[SALVO];
+            salvo_form_factors(salvo, shooters, size, proxel_counts, disk_proxels, factors, stride,
+                               rows, INT_MAX, patch, form_factor, owned);
+            receive(form_factor, shooters, shot_flux, stride, patch, received, received_rest);
+        }
+    add_owned(owned, stride, proxel_counts);
 }

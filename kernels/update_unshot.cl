@@ -51,41 +51,50 @@ static bool has_shooter(const __global Shot* salvo, int size, int block) {
     return result;
 }
 
-// What is left to the shooters of a block, by the form factors to them.
-static void reduce_block(const __global Shot* salvo, int size, const real_v* form_factor,
-                         const __global float* shot_flux, int block, int shooter_stride,
-                         __global float* unshot, const __global float* reflectance,
-                         const __global float* band_weight, __global BlockSummary* summaries,
-                         __global float* block_unshot) {
-    BlockSummary summary = {-1.0f, 0};
+// What a block's shooters have left, in the making.
+typedef struct {
+    BlockSummary summary;
+    bool has_shot;
     real_v sums[BANDS][ACCUMULATORS];
+} Reduction;
+
+static void begin_reduction(const __global Shot* salvo, int size, int block, Reduction* reduction) {
+    const BlockSummary none = {-1.0f, 0};
+    reduction->summary = none;
+    reduction->has_shot = has_shooter(salvo, size, block);
     for (int band = 0; band < BANDS; ++band)
-        for (int a = 0; a < ACCUMULATORS; ++a) sums[band][a] = (real_v)0.0f;
-    const bool has_shot = has_shooter(salvo, size, block);
-    for (int step = 0; step < BLOCK_VECTORS; ++step) {
-        const int shooter = block * kReduceBlock + step * LANES;
-        const int_v shot = has_shot ? are_shooters(salvo, size, shooter) : (int_v)0;
-        real_v energy = (real_v)0.0f;
-        for (int band = 0; band < BANDS; ++band) {
-            const int at = band * shooter_stride + shooter;
-            const real_v kept = choose_v(shot, (real_v)0.0f, load_v(at, unshot));
-            const real_v left =
-                fma(load_v(at, reflectance), flux_to(form_factor, size, shot_flux, step, band),
-                    kept);
-            *real_vectors(unshot + at) = left;
-            energy = fma((real_v)band_weight[band], left, energy);
-            sums[band][step % ACCUMULATORS] += left;
-        }
-        if (!any_v(less_v((real_v)summary.energy, energy))) continue;
-        for (int lane = 0; lane < LANES; ++lane)
-            if (lane_of(energy, lane) > summary.energy) {
-                summary.energy = lane_of(energy, lane);
-                summary.shooter = shooter + lane;
-            }
+        for (int a = 0; a < ACCUMULATORS; ++a) reduction->sums[band][a] = (real_v)0.0f;
+}
+
+// What is left to LANES shooters, by the form factors to them.
+static void reduce(const __global Shot* salvo, int size, const real_v* form_factor,
+                   const __global float* shot_flux, int shooter, int step, int shooter_stride,
+                   __global float* unshot, const __global float* reflectance,
+                   const __global float* band_weight, Reduction* reduction) {
+    const int_v shot = reduction->has_shot ? are_shooters(salvo, size, shooter) : (int_v)0;
+    real_v energy = (real_v)0.0f;
+    for (int band = 0; band < BANDS; ++band) {
+        const int at = band * shooter_stride + shooter;
+        const real_v kept = choose_v(shot, (real_v)0.0f, load_v(at, unshot));
+        const real_v left = fma(load_v(at, reflectance),
+                                flux_to(form_factor, size, shot_flux, band), kept);
+        *real_vectors(unshot + at) = left;
+        energy = fma((real_v)band_weight[band], left, energy);
+        reduction->sums[band][step % ACCUMULATORS] += left;
     }
-    summaries[block] = summary;
+    if (!any_v(less_v((real_v)reduction->summary.energy, energy))) return;
+    for (int lane = 0; lane < LANES; ++lane)
+        if (lane_of(energy, lane) > reduction->summary.energy) {
+            reduction->summary.energy = lane_of(energy, lane);
+            reduction->summary.shooter = shooter + lane;
+        }
+}
+
+static void end_reduction(const Reduction* reduction, int block, __global BlockSummary* summaries,
+                          __global float* block_unshot) {
+    summaries[block] = reduction->summary;
     for (int band = 0; band < BANDS; ++band)
-        block_unshot[block * BANDS + band] = total_of(sums[band]);
+        block_unshot[block * BANDS + band] = total_of(reduction->sums[band]);
 }
 
 __kernel void update_unshot(const __global Shot* salvo, const __global float* shot_flux,
@@ -97,13 +106,17 @@ __kernel void update_unshot(const __global Shot* salvo, const __global float* sh
     const int size = shooter_count(salvo);
     for (int block = get_global_id(0); block < shooter_stride / kReduceBlock;
          block += get_global_size(0)) {
-        real_v form_factor[SALVO * BLOCK_VECTORS];
-        for (int member = 0; member < size; ++member)
-            for (int step = 0; step < BLOCK_VECTORS; ++step)
-                form_factor[member * BLOCK_VECTORS + step] =
-                    form_factor_to(rows + (size_t)salvo[member].row * stride, first_patch,
-                                   block * kReduceBlock + step * LANES);
-        reduce_block(salvo, size, form_factor, shot_flux, block, shooter_stride, unshot,
-                     reflectance, band_weight, summaries, block_unshot);
+        Reduction reduction;
+        begin_reduction(salvo, size, block, &reduction);
+        for (int step = 0; step < BLOCK_VECTORS; ++step) {
+            const int shooter = block * kReduceBlock + step * LANES;
+            real_v form_factor[SALVO];
+            for (int member = 0; member < size; ++member)
+                form_factor[member] = form_factor_to(rows + (size_t)salvo[member].row * stride,
+                                                     first_patch, shooter);
+            reduce(salvo, size, form_factor, shot_flux, shooter, step, shooter_stride, unshot,
+                   reflectance, band_weight, &reduction);
+        }
+        end_reduction(&reduction, block, summaries, block_unshot);
     }
 }
