@@ -13,7 +13,7 @@ void on_chosen(CLI::App& command, std::function<void()> choose) {
 }
 
 void on_understood(CLI::App& command, std::function<void()> conclude) {
-    command.final_callback(std::move(conclude));
+    command.parse_complete_callback(std::move(conclude));
 }
 
 CLI::Option* add_value(CLI::App& command, const OptionText& text,

@@ -19,10 +19,10 @@ using Command = std::function<int()>;
 
 CLI::App& add_command(CLI::App& app, const std::string& name, const std::string& meaning);
 
-/// Called when the arguments after the command's name are understood.
+/// Called when all of the command line is understood.
 void on_chosen(CLI::App& command, std::function<void()> choose);
 
-/// Called when all of the command line is understood, whichever command it names.
+/// Called before that, when the arguments after the command's name are understood.
 void on_understood(CLI::App& command, std::function<void()> conclude);
 
 /// How an option appears in --help.

@@ -223,6 +223,16 @@ class FormFactorsTalk(FormFactorsCase):
         self.assertEqual(1, report["rows"])
         self.assertGreater(report["seconds"]["total"], report["seconds"]["factors"])
 
+    def test_quality_is_a_target_unless_hemispheres_are_chosen_by_hand(self):
+        by_hand = ("--resolution", "64")
+        for arguments, target in (((), 1e-3), (("--quality", "draft"), None),
+                                  (("--quality", "high"), 1e-4), (by_hand, None),
+                                  (("--quality", "medium", *by_hand), 1e-3)):
+            self.assert_done(self.run_hemirad("formfactors", "cube.obj", "-o", "f.csv", "--report",
+                                              "r.json", "--from", "x0", *arguments))
+            settings = json.loads((self.folder / "r.json").read_text())["settings"]
+            self.assertEqual(target, settings.get("target_error"), arguments)
+
     def test_first_interrupt_leaves_nothing(self):
         process = subprocess.Popen(
             [HEMIRAD, "formfactors", "cube.obj", "-o", "f.csv", "--patch-size", "0.02",
