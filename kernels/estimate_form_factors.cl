@@ -12,26 +12,52 @@
 // rounding.
 #define kSamePlane 1e-4f
 
-static float3 normal_at(const __global float* normals, int stride, int patch) {
-    return (float3)(normals[patch], normals[stride + patch], normals[2 * stride + patch]);
+typedef struct {
+    const __global int *corners, *planes;
+    const __global float* normals;
+    const __global uchar* rims;
+    int stride;
+} Patches;
+
+static float3 normal_at(const Patches* patches, int patch) {
+    const __global float* normals = patches->normals + patch;
+    return (float3)(normals[0], normals[patches->stride], normals[2 * patches->stride]);
 }
 
-// The first corner of a patch as seen from the hemisphere's centre.
-static float3 corner_at(const __global Shot* shot, const __global int* corners, int stride,
-                        int patch) {
+// A corner of a patch as seen from the hemisphere's centre.
+static float3 corner_at(const __global Shot* shot, const Patches* patches, int k, int patch) {
+    const __global int* corners = patches->corners + 3 * k * patches->stride + patch;
     const int3 corner =
-        (int3)(corners[patch], corners[stride + patch], corners[2 * stride + patch]);
+        (int3)(corners[0], corners[patches->stride], corners[2 * patches->stride]);
     return kGridStep *
            convert_float3(corner - (int3)(shot->origin[0], shot->origin[1], shot->origin[2]));
 }
 
-// Whether the plane of `owner` cuts the way from the hemisphere's centre to `middle`.
-static bool hides(const __global Shot* shot, const __global int* corners,
-                  const __global float* normals, int stride, int owner, float3 middle) {
-    const float3 normal = normal_at(normals, stride, owner);
-    const float height = dot(normal, corner_at(shot, corners, stride, owner));
+// Whether a direction passes a patch on the inner side of those of its edges at which its plane
+// ends: within it, or within neighbours in its plane.
+static bool is_within_rims(const __global Shot* shot, const Patches* patches, int patch,
+                           float3 direction) {
+    const int rims = patches->rims[patch];
+    if (rims == 0) return true;
+    float3 corner[CORNERS];
+    for (int k = 0; k < CORNERS; ++k) corner[k] = corner_at(shot, patches, k, patch);
+    for (int k = 0; k < CORNERS; ++k) {
+        const float3 next = corner[k + 1 < CORNERS ? k + 1 : 0];
+        if ((rims >> k & 1) != 0 && dot(cross(corner[k], next), direction) > 0.0f) return false;
+    }
+    return true;
+}
+
+// Whether `owner` cuts the way from the hemisphere's centre to `middle`, a point of `patch`.
+static bool hides(const __global Shot* shot, const Patches* patches, int owner, int patch,
+                  float3 middle) {
+    const int plane = patches->planes[owner];
+    if (plane >= 0 && plane == patches->planes[patch]) return false;
+    const float3 normal = normal_at(patches, owner);
     const float along = dot(normal, middle);
-    return along < 0.0f && height > (1.0f - kSamePlane) * along;
+    if (along >= 0.0f) return false;
+    const float height = dot(normal, corner_at(shot, patches, 0, owner));
+    return height > (1.0f - kSamePlane) * along && is_within_rims(shot, patches, owner, middle);
 }
 
 static Point middle_of(const Point* corner) {
@@ -40,27 +66,35 @@ static Point middle_of(const Point* corner) {
     return scaled_v((real_v)(1.0f / CORNERS), middle);
 }
 
-// The proxel around a direction of the shooter's frame, along one axis.
-static int_v proxel_around(real_v along, real_v distance) {
-    const int_v place = to_int_v((along / distance + 1.0f) * (0.5f * RESOLUTION));
-    return clamp(place, (int_v)0, (int_v)(RESOLUTION - 1));
+// The last proxel whose centre a direction of the shooter's frame has passed, along one axis.
+static int_v proxel_before(real_v along, real_v distance) {
+    const int_v place = to_int_v(fma(along / distance + 1.0f, 0.5f * RESOLUTION, -0.5f));
+    return clamp(place, (int_v)0, (int_v)(RESOLUTION - 2));
 }
 
-// A patch that covers no proxel's centre is as visible as its middle, and this is hidden where
-// whoever owns the proxel around it lies before it. A bit for each of `asked` patches that is hidden.
-static int hidden_middles(const __global Shot* shot, const __global int* corners,
-                          const __global float* normals, int stride, const __global int* owners,
-                          int patch, int asked, Point middle, Point turned) {
+// A patch that covers no proxel's centre is as visible as its middle. What hides this owns one of
+// the four proxels around it, where it is wider than a proxel and the middle not at its corner. A
+// bit for each of `asked` patches that is hidden.
+static int hidden_middles(const __global Shot* shot, const Patches* patches,
+                          const __global int* owners, int patch, int asked, Point middle,
+                          Point turned) {
     const real_v distance = sqrt(dot_v(turned, turned));
-    const int_v column = proxel_around(turned.x, distance), row = proxel_around(turned.y, distance);
+    const int_v column = proxel_before(turned.x, distance), row = proxel_before(turned.y, distance);
     int hidden = 0;
     for (int rest = asked; rest != 0; rest &= rest - 1) {
-        const int lane = lowest_bit(rest);
-        const int owner = owners[proxel_place(int_lane_of(column, lane), int_lane_of(row, lane))];
-        if (owner >= stride || owner == patch + lane) continue;
-        const float3 own = (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane),
-                                    lane_of(middle.z, lane));
-        hidden |= (int)hides(shot, corners, normals, stride, owner, own) << lane;
+        const int lane = lowest_bit(rest), own = patch + lane;
+        const float3 at = (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane),
+                                   lane_of(middle.z, lane));
+        int last = own;
+        for (int k = 0; k < 4; ++k) {
+            const int owner = owners[proxel_place(int_lane_of(column, lane) + (k & 1),
+                                                  int_lane_of(row, lane) + (k >> 1))];
+            if (owner == last || owner == own || owner >= patches->stride) continue;
+            last = owner;
+            if (!hides(shot, patches, owner, own, at)) continue;
+            hidden |= 1 << lane;
+            break;
+        }
     }
     return hidden;
 }
@@ -70,13 +104,15 @@ static void add_to(__global float* sums, real_v value) {
 }
 
 __kernel void estimate_form_factors(const __global Shot* salvo, const __global int* corners,
-                                    const __global float* normals, int stride, int depth,
+                                    const __global float* normals, const __global int* planes,
+                                    const __global uchar* rims, int stride, int depth,
                                     const __global Level* stack, const __global int* stack_height,
                                     const __global int* owners, __global int* proxel_counts,
                                     __global int* covered_counts, __global float* factors) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     const __global Shot* shot = salvo + own.member;
+    const Patches patches = {corners, planes, normals, rims, stride};
     const __global int* plane = owners + own.station * TILE_COUNT * TILE_VECTORS * LANES;
     __global int* proxel_count = proxel_counts + own.station * (stride + kCountsGap);
     const __global Level* level = stack + own.place * (depth / LANES);
@@ -97,8 +133,8 @@ __kernel void estimate_form_factors(const __global Shot* salvo, const __global i
         const int asked = level->visible & bits_of(all == 0);
         real_v fraction = to_real_v(visible) / to_real_v(max(all, (int_v)1));
         if (asked != 0) {
-            const int hidden = hidden_middles(shot, corners, normals, stride, plane, level->patch,
-                                              asked, middle, middle_of(corner));
+            const int hidden = hidden_middles(shot, &patches, plane, level->patch, asked,
+                                              middle, middle_of(corner));
             fraction = choose_v(lanes_of(asked & ~hidden), (real_v)1.0f, fraction);
         }
         owned += visible;

@@ -8,6 +8,7 @@
 
 #include "errors.h"
 #include "kernels/shared.h"
+#include "solver/find_rims.h"
 
 namespace hemirad {
 namespace {
@@ -140,6 +141,8 @@ PatchArrays patch_arrays(const Mesh& mesh) {
     arrays.centre = 0.5 * extent.least + 0.5 * extent.most;
     arrays.scale = normalising_scale(extent);
     store_polygons(arrays, mesh, mesh.patches);
+    arrays.rims = find_rims(mesh);
+    arrays.rims.resize(arrays.stride);
     return arrays;
 }
 

@@ -182,7 +182,7 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
                                                      static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
     const std::uint64_t geometry =
-        stride * 4 * (3 * corner_count + 5) + stride / kClusterPatches * sizeof(device::Cluster);
+        stride * (4 * (3 * corner_count + 5) + 1) + stride / kClusterPatches * sizeof(device::Cluster);
     const std::uint64_t shooter_stride =
         std::uint64_t{quotient_up(shooters, kReduceBlock)} * kReduceBlock;
     const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride);
@@ -236,6 +236,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
     planes_ = acu_.plural(patches.planes);
+    rims_ = acu_.plural(patches.rims);
     load_shooters(shooters);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
     const std::size_t stacks = std::size_t{salvo_} * stack_count_;
@@ -309,6 +310,7 @@ void ShotPipeline::load(const PatchArrays& patches) {
     acu_.load(corners_, std::span(patches.corners));
     acu_.load(normals_, std::span(patches.normals));
     acu_.load(planes_, std::span(patches.planes));
+    acu_.load(rims_, std::span(patches.rims));
 }
 
 mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.at(name); }
@@ -379,8 +381,8 @@ void ShotPipeline::project_patches() {
 
 void ShotPipeline::estimate_form_factors() {
     acu_.issue(kernel("estimate_form_factors"), salvo_stack_grid(), shot_, corners_, normals_,
-               std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_, owners_,
-               proxel_count_, covered_count_, factors_);
+               planes_, rims_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_,
+               owners_, proxel_count_, covered_count_, factors_);
 }
 
 void ShotPipeline::correct_near_pairs() {

@@ -173,6 +173,7 @@ class ShotPipeline {
     mp1map::Plural<device::Cluster> clusters_;
     mp1map::Plural<std::int32_t> corners_, planes_;
     mp1map::Plural<float> normals_, roots_;
+    mp1map::Plural<std::uint8_t> rims_;
     // The patches' own where each shoots for itself.
     mp1map::Plural<std::int32_t> shooter_corners_, shooter_planes_, first_patch_;
     mp1map::Plural<float> shooter_normals_;

@@ -79,6 +79,22 @@ TEST_P(EstimateFormFactors, APatchBetweenProxelsIsAsVisibleAsItsMiddle) {
     EXPECT_EQ(sums.visible[5], sums.unblocked[5]);  // in its plane
 }
 
+// A proxel is 0.03 wide here; the ceiling's edge passes at x = 0.003 to 0.03 and 3 in 10 of that
+// before and behind it.
+TEST_P(EstimateFormFactors, WhatLiesBetweenProxelsIsHiddenUpToTheOutlineBeforeIt) {
+    for (int i = 1; i <= 10; ++i) {
+        const double edge = 3e-3 * i;
+        const auto ceiling = square({edge + 2, 0, 1}, kY, kX, 4);
+        const auto speck = [&](double x) { return square({2 * x, 0.3, 2}, kY, kX, 1e-5); };
+
+        const auto sums = seen_by_first({kFloor, ceiling, speck(edge - 1e-3), speck(edge + 1e-3)});
+
+        EXPECT_EQ(sums.visible[2], sums.unblocked[2]) << edge;
+        EXPECT_GT(sums.unblocked[3], 0) << edge;
+        EXPECT_EQ(sums.visible[3], 0) << edge;
+    }
+}
+
 TEST_P(EstimateFormFactors, TheCountsAreSpentAndAddedUp) {
     seen_by_first({kFloor, square({0, 0, 1}, kY, kX, 1), square({0.2, 0, 2}, kY, kX, 3)});
 

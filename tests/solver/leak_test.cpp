@@ -64,6 +64,20 @@ TEST(SealedRoom, StaysDarkOnEveryTexelBehindThickWalls) {
     EXPECT_GT(std::ranges::max(solution.irradiance[0]), 1);
 }
 
+// What hides a strip of floor narrower than a proxel is found by its outline.
+TEST(SealedRoom, StaysDarkOnEveryTexelBehindWallsWithoutThickness) {
+    const Mesh mesh = meshed(hall_with_room(0), 0.4);
+    SolverSettings how = settings(256, 1e-2);
+    how.form_factor = FormFactorMode::analytic;
+    const Solution solution = solution_of(mesh, how);
+
+    const auto values = texels_shut_in(mesh, solution);
+
+    ASSERT_GT(values.size(), 200u);
+    EXPECT_LT(std::ranges::max(values), 1e-6);
+    EXPECT_GT(std::ranges::max(solution.irradiance[0]), 1);
+}
+
 // The hall as bright as it gets, the room as dark as it should be.
 TEST(SealedRoom, GetsNoLightFromTheLightmapOverWallsWithoutThickness) {
     const Mesh mesh = meshed(hall_with_room(0), 0.4);

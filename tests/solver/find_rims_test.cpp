@@ -1,0 +1,59 @@
+#include "solver/find_rims.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "scene/scenes_by_hand.h"
+#include "solver/support.h"
+
+namespace hemirad::test {
+namespace {
+
+int rims_of(const Mesh& mesh) {
+    int count = 0;
+    for (const auto bits : find_rims(mesh)) count += std::popcount(bits);
+    return count;
+}
+
+Scene sheet(const std::vector<std::vector<glm::dvec3>>& faces) {
+    Scene scene;
+    scene.file = "rims";
+    scene.bands = {"Y"};
+    scene.objects = {"a", "b"};
+    scene.materials = {{"plaster", {0.5}, {1}, false}, {"paper", {0.5}, {1}, true}};
+    for (std::uint32_t i = 0; i < faces.size(); ++i) add_face(scene, faces[i], 0, i);
+    return scene;
+}
+
+const std::vector<glm::dvec3> kLeft = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}};
+
+TEST(FindRims, OnlyTheOutlineOfAGridIsOne) {
+    const Mesh mesh = meshed(sheet({kLeft}), 1, Backfaces::cull);
+
+    EXPECT_EQ(mesh.patches.size(), 6u);
+    EXPECT_EQ(rims_of(mesh), 10);
+}
+
+TEST(FindRims, ASurfaceGoesOnInAnotherOfItsPlane) {
+    const std::vector<glm::dvec3> right = {{3, 0, 0}, {5, 0, 0}, {5, 2, 0}, {3, 2, 0}};
+
+    EXPECT_EQ(rims_of(meshed(sheet({kLeft, right}), 1, Backfaces::cull)), 14);
+}
+
+TEST(FindRims, ItEndsWhereAnotherStandsOnEdge) {
+    const std::vector<glm::dvec3> upright = {{3, 0, 0}, {3, 0, 2}, {3, 2, 2}, {3, 2, 0}};
+
+    EXPECT_EQ(rims_of(meshed(sheet({kLeft, upright}), 1, Backfaces::cull)), 10 + 8);
+}
+
+// A sheet's front and back share edges, but face apart.
+TEST(FindRims, TheBackIsNotASurfaceGoneOn) {
+    Scene paper = sheet({kLeft});
+    paper.faces[0].material = 1;
+
+    EXPECT_EQ(rims_of(meshed(paper, 1)), 20);
+}
+
+}  // namespace
+}  // namespace hemirad::test
