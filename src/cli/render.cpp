@@ -48,17 +48,35 @@ double angle(const OptionValue& value) {
 }
 
 void add_camera_options(CLI::App& command, RenderOptions& options) {
-    add_text(command, {"--camera", "NAME", "one of the scene's [its only one]"}, options.camera);
-    add_value(command, {"--eye", "X,Y,Z", "or look from here, metres"},
-              [&](const OptionValue& value) { options.eye = point(value); });
-    add_value(command, {"--look-at", "X,Y,Z", "this shall be in the middle [the scene's middle]"},
-              [&](const OptionValue& value) { options.look_at = point(value); });
-    add_value(command, {"--up", "X,Y,Z", "what is up from --eye [0,1,0]"},
-              [&](const OptionValue& value) { options.up = point(value); });
+    auto* const camera = add_text(
+        command, {"--camera", "NAME", "one of the scene's [its only one]"}, options.camera);
+    exclude(camera, add_value(command, {"--eye", "X,Y,Z", "or look from here, metres"},
+                              [&](const OptionValue& value) { options.eye = point(value); }));
+    auto* const look_at = add_value(
+        command, {"--look-at", "X,Y,Z", "this shall be in the middle [the scene's middle]"},
+        [&](const OptionValue& value) { options.look_at = point(value); });
+    auto* const up = add_value(command, {"--up", "X,Y,Z", "what is up from --eye [0,1,0]"},
+                               [&](const OptionValue& value) { options.up = point(value); });
     add_value(command, {"--fov", "DEGREES", "from top to bottom [the camera's; 45]"},
               [&](const OptionValue& value) { options.fov = angle(value); });
-    command.get_option("--camera")->excludes("--eye");
-    for (const char* name : {"--look-at", "--up"}) command.get_option(name)->needs("--eye");
+    for (auto* const option : {look_at, up}) need(command, option, "--eye");
+}
+
+void add_tone_options(CLI::App& command, RenderOptions& options) {
+    auto* const exposure = add_value(
+        command,
+        {"--exposure", "X", "white is 1 - exp(-X radiance) [nine tenths below 80 % white]"},
+        [&](const OptionValue& value) { options.exposure = positive_number(value); });
+    auto* const false_colour =
+        add_value(command,
+                  {"--false-colour", "[MAX]",
+                   "irradiance, all bands added, up to MAX W/m^2 [nearly all of it]"},
+                  [&](const OptionValue& value) {
+                      options.false_colour = true;
+                      if (!value.text.empty()) options.largest = positive_number(value);
+                  });
+    let_stand_alone(false_colour);
+    exclude(exposure, false_colour);
 }
 
 void add_picture_options(CLI::App& command, RenderOptions& options) {
@@ -72,17 +90,7 @@ void add_picture_options(CLI::App& command, RenderOptions& options) {
         options.render.samples = static_cast<std::uint32_t>(whole_number(value, 1, 32));
     });
     add_text(command, {"--layer", "NAME", "a layer of the lightmap alone"}, options.render.layer);
-    add_value(command,
-              {"--exposure", "X", "white is 1 - exp(-X radiance) [nine tenths below 80 % white]"},
-              [&](const OptionValue& value) { options.exposure = positive_number(value); })
-        ->excludes(add_value(command,
-                             {"--false-colour", "[MAX]",
-                              "irradiance, all bands added, up to MAX W/m^2 [nearly all of it]"},
-                             [&](const OptionValue& value) {
-                                 options.false_colour = true;
-                                 if (!value.text.empty()) options.largest = positive_number(value);
-                             })
-                       ->expected(0, 1));
+    add_tone_options(command, options);
 }
 
 [[noreturn]] void fail(const Scene& scene, const std::string& reason) {
@@ -185,14 +193,14 @@ int render_scene(RenderOptions options) {
 }  // namespace
 
 void add_render(CLI::App& app, Command& chosen) {
-    auto* const command = app.add_subcommand("render", "a picture of a solved scene");
+    auto& command = add_command(app, "render", "a picture of a solved scene");
     const auto options = std::make_shared<RenderOptions>();
-    add_lit_scene(*command, options->scene, options->lightmap);
-    add_camera_options(*command, *options);
-    add_picture_options(*command, *options);
-    command->add_flag("-q,--quiet", options->quiet, "say nothing but warnings and faults");
-    command->callback(
-        [&chosen, options] { chosen = [options] { return render_scene(*options); }; });
+    add_lit_scene(command, options->scene, options->lightmap);
+    add_camera_options(command, *options);
+    add_picture_options(command, *options);
+    add_flag(command, "-q,--quiet", options->quiet, "say nothing but warnings and faults");
+    on_chosen(command,
+              [&chosen, options] { chosen = [options] { return render_scene(*options); }; });
 }
 
 }  // namespace hemirad
