@@ -15,6 +15,7 @@
 #include "lightmap/atomic_file.h"
 #include "lightmap/png.h"
 #include "lightmap/write_exr.h"
+#include "scene/bounds.h"
 #include "scene/printable.h"
 #include "view/lit_scene.h"
 #include "view/picture_of.h"
@@ -109,18 +110,10 @@ Camera named_camera(const LitScene& lit, const std::string& name) {
                         "; --camera names one, --eye X,Y,Z needs none");
 }
 
-glm::dvec3 middle_of(const Scene& scene) {
-    glm::dvec3 least = scene.positions[0], most = least;
-    for (const glm::dvec3& p : scene.positions) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
-    return 0.5 * least + 0.5 * most;
-}
-
 Camera own_camera(const Scene& scene, const RenderOptions& options) {
     Camera camera{"eye", *options.eye};
-    const glm::dvec3 ahead = options.look_at.value_or(middle_of(scene)) - camera.eye;
+    const glm::dvec3 ahead =
+        options.look_at.value_or(bounds_of(scene.positions).middle()) - camera.eye;
     const glm::dvec3 right = glm::cross(ahead, options.up);
     if (!(glm::length(right) > 1e-9 * glm::length(ahead) * glm::length(options.up)))
         fail(scene, "--eye looks along --up, or nowhere; --look-at and --up say where");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
@@ -16,6 +15,7 @@
 #include "lightmap/base64.h"
 #include "lightmap/png.h"
 #include "lightmap/tone.h"
+#include "scene/bounds.h"
 
 namespace hemirad {
 namespace {
@@ -46,13 +46,9 @@ using Primitives = std::map<std::uint32_t, Primitive>;  ///< by material
 /// Far from the origin floats would be too coarse; a node takes coordinates there in double.
 glm::dvec3 root_of(const Scene& scene) {
     constexpr double kNear = 4;  // extents: two bits of a float's 24
-    glm::dvec3 least(std::numeric_limits<double>::max()), most(-least);
-    for (const glm::dvec3& p : scene.positions) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
-    const glm::dvec3 middle = 0.5 * least + 0.5 * most;
-    return glm::length(middle) < kNear * glm::length(most - least) ? glm::dvec3(0) : middle;
+    const Bounds bounds = bounds_of(scene.positions);
+    const glm::dvec3 middle = bounds.middle();
+    return glm::length(middle) < kNear * bounds.diagonal() ? glm::dvec3(0) : middle;
 }
 
 glm::dvec3 normal_of(const Scene& scene, const std::array<std::uint32_t, 3>& vertices) {
@@ -128,11 +124,7 @@ class Buffer {
 
     int add_positions(const std::vector<glm::vec3>& positions) {
         const int accessor = add(positions, "VEC3", kFloat, kArrayBuffer);
-        glm::vec3 least = positions[0], most = least;
-        for (const glm::vec3& p : positions) {
-            least = glm::min(least, p);
-            most = glm::max(most, p);
-        }
+        const auto [least, most] = bounds_of(positions);
         accessors_.back()["min"] = {least.x, least.y, least.z};
         accessors_.back()["max"] = {most.x, most.y, most.z};
         return accessor;

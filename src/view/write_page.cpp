@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "lightmap/base64.h"
 #include "lightmap/deflate.h"
 #include "lightmap/tone.h"
+#include "scene/bounds.h"
 #include "view/false_colour.h"
 #include "view/page_parts.h"
 
@@ -58,12 +58,8 @@ struct Ball {
 };
 
 Ball around(const Scene& scene) {
-    glm::dvec3 least = scene.positions[0], most = least;
-    for (const glm::dvec3& p : scene.positions) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
-    return {0.5 * least + 0.5 * most, glm::length(most - least) / 2};
+    const Bounds bounds = bounds_of(scene.positions);
+    return {bounds.middle(), bounds.diagonal() / 2};
 }
 
 std::vector<double> shown_of(const std::vector<double>& spectrum) {
@@ -152,9 +148,7 @@ double exposure_of(const LitScene& lit) {
     return of_lightmap * std::numbers::pi / reflected;
 }
 
-/// The scale of false colours ends where nearly all texels are below.
 double largest_of(const Lightmap& lightmap) {
-    constexpr double kNearlyAll = 0.99;
     std::vector<double> sums;
     const ShownBands shown = shown_bands(lightmap.bands.size());
     for (std::size_t texel = 0; texel < lightmap.texel_count(); ++texel)
@@ -163,10 +157,7 @@ double largest_of(const Lightmap& lightmap) {
             for (const std::size_t band : shown) sum += lightmap.values[band][texel];
             sums.push_back(lightmap.bands.size() == 1 ? sum / 3 : sum);
         }
-    if (sums.empty()) return 1;
-    const auto rank = static_cast<std::ptrdiff_t>(kNearlyAll * double(sums.size() - 1));
-    std::nth_element(sums.begin(), sums.begin() + rank, sums.end());
-    return round_above(sums[static_cast<std::size_t>(rank)]);
+    return scale_end(std::move(sums));
 }
 
 Json layers_json(const Lightmap& lightmap) {
