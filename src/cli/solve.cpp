@@ -60,10 +60,6 @@ Work prepare(SolveOptions& options) {
     options.charts.texel_size = work.layout.texel_size;
     options.atlas_count = static_cast<std::uint32_t>(work.layout.atlases.size());
     if (options.atlas_count > 1) check_outputs(options);
-    if (options.gltf && options.atlas_count > 1)
-        throw InputError(work.scene.file + ": a glTF takes one lightmap, and this needs " +
-                         std::to_string(options.atlas_count) +
-                         " atlases; raise --texel-size or --atlas-size, or take --charts generated");
     return work;
 }
 

@@ -31,6 +31,16 @@ usemtl lamp
 f 5 6 7 8
 """
 
+ROOM = """\
+o room
+usemtl white
+f 1 4 3 2
+f 1 5 8 4
+o ceiling
+usemtl lamp
+f 5 6 7 8
+"""
+
 
 def obj(vertices=LIGHT_AND_FLOOR, faces=FACES):
     return ("mtllib scene.mtl\n" + vertices + faces).encode()
