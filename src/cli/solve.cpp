@@ -223,6 +223,7 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
     SolveOptions pilot = without_snapshots(options);
     pilot.quiet = true;
     pilot.solver.parts = {};
+    pilot.solver.count_shots = false;
     pilot.solver.resolution = pilot.solver.shooter_samples = 0;
     pilot.solver.sampling_error = 0;
     pilot.solver.max_shots = SolverSettings{}.max_shots;
