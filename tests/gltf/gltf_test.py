@@ -8,7 +8,6 @@ import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -17,7 +16,6 @@ import scenes  # noqa: E402
 from exr import Exr  # noqa: E402
 from png import read_png  # noqa: E402
 
-HEMIRAD = os.environ["HEMIRAD"]
 VALIDATOR = pathlib.Path(os.environ["GLTF_VALIDATOR"])
 SCENES = HERE.parents[1] / "scenes"
 QUICK = ("--quality", "draft", "--quiet", "--max-shots", "20")
@@ -76,21 +74,13 @@ class Glb:
             yield [positions[i] for i in corners], [uvs[i] for i in corners]
 
 
-class Gltf(unittest.TestCase):
+class Gltf(scenes.InFolder):
     @classmethod
     def setUpClass(cls):
         install_validator()
 
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
-        (self.folder / "scene.obj").write_bytes(scenes.obj())
-
     def solve(self, scene, *arguments):
-        return subprocess.run([HEMIRAD, "solve", str(scene), *QUICK, *arguments], cwd=self.folder,
-                              text=True, capture_output=True, timeout=120, check=False)
+        return self.run_hemirad("solve", str(scene), *QUICK, *arguments)
 
     def test_the_cornell_box_is_valid(self):
         result = self.solve(SCENES / "cornell.gltf", "-o", "box.glb", "--patch-size", "0.15")

@@ -20,7 +20,7 @@ HEMIRAD = os.environ["HEMIRAD"]
 CORNELL = HERE.parents[1] / "scenes" / "cornell.gltf"
 
 
-class Solved(unittest.TestCase):
+class Solved(scenes.InFolder):
     """A folder with a solved Cornell box, made once a class."""
 
     @classmethod
@@ -46,14 +46,12 @@ class Solved(unittest.TestCase):
                               timeout=120, check=False)
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         for file in self.solved.iterdir():
             shutil.copy(file, self.folder)
 
     def hemirad(self, *arguments):
-        return self.call(self.folder, *arguments)
+        return self.run_hemirad(*arguments)
 
     def assert_done(self, result):
         self.assertEqual(0, result.returncode, result.stderr)
@@ -207,8 +205,6 @@ class Render(Solved):
                 self.assertFalse((self.folder / "a.png").exists())
 
     def test_a_scene_without_cameras_says_what_to_do(self):
-        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
-        (self.folder / "scene.obj").write_bytes(scenes.obj())
         self.assert_done(self.hemirad("solve", "scene.obj", "-o", "s.glb", "--quality", "draft",
                                       "--quiet"))
         self.assert_refused(self.hemirad("render", "s.glb"), "--eye X,Y,Z needs none")
