@@ -47,7 +47,7 @@ static void keep_row(__global Shot* books, const __global Shot* shot, int row_ca
 static void close_salvo(__global Shot* salvo, __global int* proxel_counts, int stride,
                         int disk_proxels, const __global float* shot_flux, int row_capacity,
                         __global int* row_of, __global float* row_escaped,
-                        __global float* escaped) {
+                        __global float* escaped, int counts_shots, __global uint* shots_of) {
     int station = 0;
     for (int member = 0; member < MEMBERS; ++member) {
         __global Shot* shot = salvo + member;
@@ -63,6 +63,7 @@ static void close_salvo(__global Shot* salvo, __global int* proxel_counts, int s
             add_escaped(escaped + band, escaped + BANDS + band,
                         shot_flux[member * BANDS + band] * row_escaped[shot->row]);
         ++salvo->shots;
+        if (counts_shots) ++shots_of[shot->shooter];
         salvo->repeated_shots += shot->row_known;
     }
     salvo->repeated_salvos += station == 0;
@@ -174,13 +175,15 @@ static void merge_ranks(const __local BlockSummary* best, BlockSummary* merged) 
     }
 }
 
+// shots_of: [shooter] the shots that it made, if anyone asks: counts_shots.
 __kernel void choose_shooter(__global Shot* salvo, const __global BlockSummary* summaries,
                              const __global float* block_unshot, int block_count,
                              const __global float* unshot, int shooter_stride,
                              const __global float* band_weight, float tolerance, int disk_proxels,
                              __global int* proxel_counts, int stride, __global float* escaped,
                              __global float* shot_flux, int row_capacity, __global int* row_of,
-                             __global float* row_escaped) {
+                             __global float* row_escaped, int counts_shots,
+                             __global uint* shots_of) {
     __local BlockSummary best[REDUCE_PES * RANKS];
     __local float left[REDUCE_PES * BANDS];
     const int pe = get_local_id(0);
@@ -196,7 +199,7 @@ __kernel void choose_shooter(__global Shot* salvo, const __global BlockSummary* 
     // No work-item may leave before a barrier, see prefix_sum.cl.
     if (pe == 0 && is_shooting(salvo)) {
         close_salvo(salvo, proxel_counts, stride, disk_proxels, shot_flux, row_capacity, row_of,
-                    row_escaped, escaped);
+                    row_escaped, escaped, counts_shots, shots_of);
         for (int other = 1; other < REDUCE_PES; ++other)
             for (int band = 0; band < BANDS; ++band) left[band] += left[other * BANDS + band];
         salvo->unshot_fraction = unshot_fraction_of(left, band_weight);

@@ -93,6 +93,8 @@ Lightmap layered_lightmap(const SolveOptions& options, const Mesh& mesh, const C
     Lightmap lightmap = rasterize_together(mesh, layout, atlas, solution, options.quantity, layers);
     if (options.layers.normal) lightmap.layers["normal"] = normal_layer(mesh, layout, atlas);
     if (options.layers.position) lightmap.layers["position"] = position_layer(mesh, layout, atlas);
+    if (options.solver.count_shots)
+        lightmap.layers["shots"] = shots_layer(mesh, layout, solution.shots_of, atlas);
     return lightmap;
 }
 

@@ -52,6 +52,8 @@ CLI::Option* add_flag(CLI::App& command, const std::string& names, std::function
 
 void require(CLI::Option* option) { option->required(); }
 
+void let_stand_alone(CLI::Option* option) { option->expected(0, 1); }
+
 void need(CLI::App& command, CLI::Option* option, const std::string& other) {
     option->needs(command.get_option(other));
 }

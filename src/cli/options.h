@@ -57,6 +57,7 @@ CLI::Option* add_flag(CLI::App& command, const std::string& names, std::function
                       const std::string& meaning);
 
 void require(CLI::Option* option);
+void let_stand_alone(CLI::Option* option);  ///< its value may be missing; it is "" then
 void exclude(CLI::Option* option, CLI::Option* other);
 void need(CLI::App& command, CLI::Option* option, const std::string& other);
 bool is_given(const CLI::Option* option);

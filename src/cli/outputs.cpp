@@ -134,8 +134,11 @@ void write_solved_scene(const SolveOptions& options, const Scene& scene,
     const auto folder = fs::absolute(*options.gltf).parent_path();
     ChartLayout downwards = layout;  // as V always runs in glTF
     downwards.flip_v = false;
-    write_gltf(*options.gltf, scene, mesh, cameras, lightmap_uvs(scene, mesh, downwards),
-               rasterize(mesh, solution, layout, Quantity::irradiance),
+    std::vector<LightmapImage> images;
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
+        images.push_back(
+            lightmap_image(rasterize(mesh, solution, layout, Quantity::irradiance, atlas)));
+    write_gltf(*options.gltf, scene, mesh, cameras, lightmap_uvs(scene, mesh, downwards), images,
                place_of(options.output).lexically_relative(place_of(folder)));
 }
 

@@ -15,6 +15,7 @@
 #include "lightmap/atomic_file.h"
 #include "lightmap/png.h"
 #include "lightmap/write_exr.h"
+#include "scene/bounds.h"
 #include "scene/printable.h"
 #include "view/lit_scene.h"
 #include "view/picture_of.h"
@@ -48,17 +49,35 @@ double angle(const OptionValue& value) {
 }
 
 void add_camera_options(CLI::App& command, RenderOptions& options) {
-    add_text(command, {"--camera", "NAME", "one of the scene's [its only one]"}, options.camera);
-    add_value(command, {"--eye", "X,Y,Z", "or look from here, metres"},
-              [&](const OptionValue& value) { options.eye = point(value); });
-    add_value(command, {"--look-at", "X,Y,Z", "this shall be in the middle [the scene's middle]"},
-              [&](const OptionValue& value) { options.look_at = point(value); });
-    add_value(command, {"--up", "X,Y,Z", "what is up from --eye [0,1,0]"},
-              [&](const OptionValue& value) { options.up = point(value); });
+    auto* const camera = add_text(
+        command, {"--camera", "NAME", "one of the scene's [its only one]"}, options.camera);
+    exclude(camera, add_value(command, {"--eye", "X,Y,Z", "or look from here, metres"},
+                              [&](const OptionValue& value) { options.eye = point(value); }));
+    auto* const look_at = add_value(
+        command, {"--look-at", "X,Y,Z", "this shall be in the middle [the scene's middle]"},
+        [&](const OptionValue& value) { options.look_at = point(value); });
+    auto* const up = add_value(command, {"--up", "X,Y,Z", "what is up from --eye [0,1,0]"},
+                               [&](const OptionValue& value) { options.up = point(value); });
     add_value(command, {"--fov", "DEGREES", "from top to bottom [the camera's; 45]"},
               [&](const OptionValue& value) { options.fov = angle(value); });
-    command.get_option("--camera")->excludes("--eye");
-    for (const char* name : {"--look-at", "--up"}) command.get_option(name)->needs("--eye");
+    for (auto* const option : {look_at, up}) need(command, option, "--eye");
+}
+
+void add_tone_options(CLI::App& command, RenderOptions& options) {
+    auto* const exposure = add_value(
+        command,
+        {"--exposure", "X", "white is 1 - exp(-X radiance) [nine tenths below 80 % white]"},
+        [&](const OptionValue& value) { options.exposure = positive_number(value); });
+    auto* const false_colour =
+        add_value(command,
+                  {"--false-colour", "[MAX]",
+                   "irradiance, all bands added, up to MAX W/m^2 [nearly all of it]"},
+                  [&](const OptionValue& value) {
+                      options.false_colour = true;
+                      if (!value.text.empty()) options.largest = positive_number(value);
+                  });
+    let_stand_alone(false_colour);
+    exclude(exposure, false_colour);
 }
 
 void add_picture_options(CLI::App& command, RenderOptions& options) {
@@ -72,17 +91,7 @@ void add_picture_options(CLI::App& command, RenderOptions& options) {
         options.render.samples = static_cast<std::uint32_t>(whole_number(value, 1, 32));
     });
     add_text(command, {"--layer", "NAME", "a layer of the lightmap alone"}, options.render.layer);
-    add_value(command,
-              {"--exposure", "X", "white is 1 - exp(-X radiance) [nine tenths below 80 % white]"},
-              [&](const OptionValue& value) { options.exposure = positive_number(value); })
-        ->excludes(add_value(command,
-                             {"--false-colour", "[MAX]",
-                              "irradiance, all bands added, up to MAX W/m^2 [nearly all of it]"},
-                             [&](const OptionValue& value) {
-                                 options.false_colour = true;
-                                 if (!value.text.empty()) options.largest = positive_number(value);
-                             })
-                       ->expected(0, 1));
+    add_tone_options(command, options);
 }
 
 [[noreturn]] void fail(const Scene& scene, const std::string& reason) {
@@ -101,18 +110,10 @@ Camera named_camera(const LitScene& lit, const std::string& name) {
                         "; --camera names one, --eye X,Y,Z needs none");
 }
 
-glm::dvec3 middle_of(const Scene& scene) {
-    glm::dvec3 least = scene.positions[0], most = least;
-    for (const glm::dvec3& p : scene.positions) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
-    return 0.5 * least + 0.5 * most;
-}
-
 Camera own_camera(const Scene& scene, const RenderOptions& options) {
     Camera camera{"eye", *options.eye};
-    const glm::dvec3 ahead = options.look_at.value_or(middle_of(scene)) - camera.eye;
+    const glm::dvec3 ahead =
+        options.look_at.value_or(bounds_of(scene.positions).middle()) - camera.eye;
     const glm::dvec3 right = glm::cross(ahead, options.up);
     if (!(glm::length(right) > 1e-9 * glm::length(ahead) * glm::length(options.up)))
         fail(scene, "--eye looks along --up, or nowhere; --look-at and --up say where");
@@ -185,14 +186,14 @@ int render_scene(RenderOptions options) {
 }  // namespace
 
 void add_render(CLI::App& app, Command& chosen) {
-    auto* const command = app.add_subcommand("render", "a picture of a solved scene");
+    auto& command = add_command(app, "render", "a picture of a solved scene");
     const auto options = std::make_shared<RenderOptions>();
-    add_lit_scene(*command, options->scene, options->lightmap);
-    add_camera_options(*command, *options);
-    add_picture_options(*command, *options);
-    command->add_flag("-q,--quiet", options->quiet, "say nothing but warnings and faults");
-    command->callback(
-        [&chosen, options] { chosen = [options] { return render_scene(*options); }; });
+    add_lit_scene(command, options->scene, options->lightmap);
+    add_camera_options(command, *options);
+    add_picture_options(command, *options);
+    add_flag(command, "-q,--quiet", options->quiet, "say nothing but warnings and faults");
+    on_chosen(command,
+              [&chosen, options] { chosen = [options] { return render_scene(*options); }; });
 }
 
 }  // namespace hemirad

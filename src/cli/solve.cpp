@@ -60,10 +60,6 @@ Work prepare(SolveOptions& options) {
     options.charts.texel_size = work.layout.texel_size;
     options.atlas_count = static_cast<std::uint32_t>(work.layout.atlases.size());
     if (options.atlas_count > 1) check_outputs(options);
-    if (options.gltf && options.atlas_count > 1)
-        throw InputError(work.scene.file + ": a glTF takes one lightmap, and this needs " +
-                         std::to_string(options.atlas_count) +
-                         " atlases; raise --texel-size or --atlas-size, or take --charts generated");
     return work;
 }
 
@@ -227,6 +223,7 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
     SolveOptions pilot = without_snapshots(options);
     pilot.quiet = true;
     pilot.solver.parts = {};
+    pilot.solver.count_shots = false;
     pilot.solver.resolution = pilot.solver.shooter_samples = 0;
     pilot.solver.sampling_error = 0;
     pilot.solver.max_shots = SolverSettings{}.max_shots;

@@ -15,7 +15,7 @@ const std::vector<std::string_view> kQualities{"draft", "medium", "high", "ultra
 const std::vector<std::string_view> kFormFactorModes{"count", "analytic"};
 const std::vector<std::string_view> kLights{"together", "separate", "by-material"};
 const std::vector<std::string_view> kLayers{"direct",   "indirect", "emission", "normal",
-                                            "position", "coverage", "error"};
+                                            "position", "shots",    "coverage", "error"};
 constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
 
 void add_file_options(CLI::App& command, SolveOptions& options) {
@@ -105,24 +105,29 @@ SnapshotInterval snapshot_interval(const OptionValue& value) {
 // Of the EXR; coverage is there anyway.
 void wish_for(const OptionValue& layer, SolveOptions& options) {
     bool coverage = true;
-    bool* const wishes[] = {&options.solver.parts.direct, &options.solver.parts.indirect,
-                            &options.layers.emission,     &options.layers.normal,
-                            &options.layers.position,     &coverage,
+    bool* const wishes[] = {&options.solver.parts.direct,
+                            &options.solver.parts.indirect,
+                            &options.layers.emission,
+                            &options.layers.normal,
+                            &options.layers.position,
+                            &options.solver.count_shots,
+                            &coverage,
                             &options.estimate_error};
     *wishes[one_of(layer, kLayers)] = true;
 }
 
 void add_layers(CLI::App& command, SolveOptions& options) {
-    add_value(command,
-              {"--layers", "NAME,...",
-               "further layers of the EXR: direct, indirect, emission, normal, position, error"},
-              [&](const OptionValue& value) {
-                  for (std::size_t first = 0; first <= value.text.size();) {
-                      const auto end = std::min(value.text.find(',', first), value.text.size());
-                      wish_for({value.option, value.text.substr(first, end - first)}, options);
-                      first = end + 1;
-                  }
-              });
+    add_value(
+        command,
+        {"--layers", "NAME,...",
+         "further layers of the EXR: direct, indirect, emission, normal, position, shots, error"},
+        [&](const OptionValue& value) {
+            for (std::size_t first = 0; first <= value.text.size();) {
+                const auto end = std::min(value.text.find(',', first), value.text.size());
+                wish_for({value.option, value.text.substr(first, end - first)}, options);
+                first = end + 1;
+            }
+        });
 }
 
 void add_picture_options(CLI::App& command, SolveOptions& options) {
@@ -205,11 +210,10 @@ void add_machine_options(CLI::App& command, SolveOptions& options) {
 
 std::string layers_text(const SolveOptions& options) {
     std::string text;
-    const std::pair<bool, const char*> wishes[] = {{options.solver.parts.direct, "direct"},
-                                                   {options.solver.parts.indirect, "indirect"},
-                                                   {options.layers.emission, "emission"},
-                                                   {options.layers.normal, "normal"},
-                                                   {options.layers.position, "position"}};
+    const std::pair<bool, const char*> wishes[] = {
+        {options.solver.parts.direct, "direct"}, {options.solver.parts.indirect, "indirect"},
+        {options.layers.emission, "emission"},   {options.layers.normal, "normal"},
+        {options.layers.position, "position"},   {options.solver.count_shots, "shots"}};
     for (const auto& [wished, name] : wishes)
         if (wished) text += (text.empty() ? "" : ",") + std::string(name);
     return text;

@@ -38,19 +38,18 @@ int view(ViewOptions options) {
 
 void add_lit_scene(CLI::App& command, std::filesystem::path& scene,
                    std::optional<std::filesystem::path>& lightmap) {
-    add_text(command, {"SOLVED", "", "the .glb or .gltf of hemirad solve --gltf"}, scene)
-        ->required();
+    require(add_text(command, {"SOLVED", "", "the .glb or .gltf of hemirad solve --gltf"}, scene));
     add_text(command, {"--lightmap", "FILE.exr", "its light [what SOLVED names]"}, lightmap);
 }
 
 void add_view(CLI::App& app, Command& chosen) {
-    auto* const command = app.add_subcommand("view", "a solved scene as a page for a browser");
+    auto& command = add_command(app, "view", "a solved scene as a page for a browser");
     const auto options = std::make_shared<ViewOptions>();
-    add_lit_scene(*command, options->scene, options->lightmap);
-    add_text(*command, {"-o,--output", "FILE.html", "the page [SOLVED's name, here]"},
+    add_lit_scene(command, options->scene, options->lightmap);
+    add_text(command, {"-o,--output", "FILE.html", "the page [SOLVED's name, here]"},
              options->output);
-    command->add_flag("-q,--quiet", options->quiet, "say nothing but warnings and faults");
-    command->callback([&chosen, options] { chosen = [options] { return view(*options); }; });
+    add_flag(command, "-q,--quiet", options->quiet, "say nothing but warnings and faults");
+    on_chosen(command, [&chosen, options] { chosen = [options] { return view(*options); }; });
 }
 
 }  // namespace hemirad

@@ -8,28 +8,32 @@
 namespace hemirad {
 namespace {
 
-Layer empty_layer(const Atlas& atlas, const char* meaning) {
-    Layer layer{{"X", "Y", "Z"}, {}, meaning};
-    layer.values.assign(3, std::vector<float>(std::size_t{atlas.width} * atlas.height));
+using Components = std::vector<std::string>;
+
+const Components kAxes{"X", "Y", "Z"};
+
+Layer empty_layer(const Atlas& atlas, const char* meaning, Components components) {
+    Layer layer{std::move(components), {}, meaning};
+    layer.values.assign(layer.components.size(),
+                        std::vector<float>(std::size_t{atlas.width} * atlas.height));
     return layer;
 }
 
-/// Writes value_of(surface, place on it) for each texel that shows something.
+/// Writes value_of(patch, place on its surface) for each texel that shows something.
 template <class ValueOf>
-void write(const Mesh& mesh, const Footprints& footprints, const Atlas& atlas,
-           const ValueOf& value_of, Layer& layer) {
+void write(const Footprints& footprints, const Atlas& atlas, const ValueOf& value_of,
+           Layer& layer) {
     const auto& [left, top, width, height] = footprints.within;
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
             const Footprint& from = footprints.texels[std::size_t{y} * width + x];
             if (from.patch == kNoPatch) continue;
             const glm::dvec2 centre(left + x + 0.5, top + y + 0.5);
-            const glm::dvec3 value = value_of(mesh.surfaces[mesh.patches[from.patch].surface],
-                                              footprints.maps[from.map].place_of(centre));
+            const glm::dvec3 value =
+                value_of(from.patch, footprints.maps[from.map].place_of(centre));
             const std::size_t texel = std::size_t{top + y} * atlas.width + left + x;
-            for (int axis = 0; axis < 3; ++axis)
-                layer.values[static_cast<std::size_t>(axis)][texel] =
-                    static_cast<float>(value[axis]);
+            for (std::size_t i = 0; i < layer.values.size(); ++i)
+                layer.values[i][texel] = static_cast<float>(value[static_cast<int>(i)]);
         }
 }
 
@@ -39,23 +43,24 @@ void write_all(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
     const auto hidden = find_hidden(mesh);
     if (std::ranges::find(layout.authored, atlas, &AuthoredTriangle::atlas) !=
         layout.authored.end())
-        write(mesh, authored_footprints(mesh, layout, atlas, hidden), layout.atlases[atlas],
-              value_of, layer);
+        write(authored_footprints(mesh, layout, atlas, hidden), layout.atlases[atlas], value_of,
+              layer);
     for (const Chart& chart : layout.charts)
         if (chart.atlas == atlas)
-            write(mesh, chart_footprints(mesh, layout, chart, hidden), layout.atlases[atlas],
-                  value_of, layer);
+            write(chart_footprints(mesh, layout, chart, hidden), layout.atlases[atlas], value_of,
+                  layer);
 }
 
 }  // namespace
 
 Layer position_layer(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas) {
     Layer layer =
-        empty_layer(layout.atlases[atlas], "position of the texel's centre, world space, m");
+        empty_layer(layout.atlases[atlas], "position of the texel's centre, world space, m", kAxes);
     layer.exact = true;
     write_all(
         mesh, layout, atlas,
-        [](const Surface& surface, const glm::dvec2& place) {
+        [&](std::uint32_t patch, const glm::dvec2& place) {
+            const Surface& surface = mesh.surfaces[mesh.patches[patch].surface];
             return surface.origin + place.x * surface.u_axis + place.y * surface.v_axis;
         },
         layer);
@@ -63,10 +68,23 @@ Layer position_layer(const Mesh& mesh, const ChartLayout& layout, std::uint32_t 
 }
 
 Layer normal_layer(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas) {
-    Layer layer = empty_layer(layout.atlases[atlas], "unit normal, world space");
+    Layer layer = empty_layer(layout.atlases[atlas], "unit normal, world space", kAxes);
     write_all(
         mesh, layout, atlas,
-        [](const Surface& surface, const glm::dvec2&) { return surface.normal; }, layer);
+        [&](std::uint32_t patch, const glm::dvec2&) {
+            return mesh.surfaces[mesh.patches[patch].surface].normal;
+        },
+        layer);
+    return layer;
+}
+
+Layer shots_layer(const Mesh& mesh, const ChartLayout& layout,
+                  const std::vector<std::uint32_t>& shots_of, std::uint32_t atlas) {
+    Layer layer = empty_layer(layout.atlases[atlas], "shots that the texel's patch made", {"Y"});
+    layer.exact = true;
+    write_all(
+        mesh, layout, atlas,
+        [&](std::uint32_t patch, const glm::dvec2&) { return glm::dvec3(shots_of[patch]); }, layer);
     return layer;
 }
 

@@ -14,4 +14,8 @@ Layer position_layer(const Mesh& mesh, const ChartLayout& layout, std::uint32_t 
 /// gutters, too.
 Layer normal_layer(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas = 0);
 
+/// The shots that each texel's patch made, Solution::shots_of, nothing blended; in gutters, too.
+Layer shots_layer(const Mesh& mesh, const ChartLayout& layout,
+                  const std::vector<std::uint32_t>& shots_of, std::uint32_t atlas = 0);
+
 }  // namespace hemirad

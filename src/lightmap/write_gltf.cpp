@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <glm/common.hpp>
+#include <compare>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <tuple>
 
 #include "errors.h"
+#include "lightmap/atlas_file.h"
 #include "lightmap/atomic_file.h"
 #include "lightmap/base64.h"
-#include "lightmap/png.h"
 #include "lightmap/tone.h"
+#include "scene/bounds.h"
 
 namespace hemirad {
 namespace {
@@ -33,7 +33,7 @@ constexpr std::size_t kUnit = 4;  // bytes that chunks and numbers are aligned t
 /// A vertex of the scene, where it lies in the lightmap, and its normal in thousandths.
 using VertexKey = std::tuple<std::uint32_t, float, float, long, long, long>;
 
-/// Of all that one object has in one material.
+/// Of all that one object has in one material and one atlas.
 struct Primitive {
     std::map<VertexKey, std::uint32_t> known;
     std::vector<glm::vec3> positions, normals;
@@ -41,18 +41,21 @@ struct Primitive {
     std::vector<std::uint32_t> indices;
 };
 
-using Primitives = std::map<std::uint32_t, Primitive>;  ///< by material
+/// A material of the scene as glTF lists it: once for each atlas that its light lies in.
+struct LitMaterial {
+    std::uint32_t material, atlas;
+
+    auto operator<=>(const LitMaterial&) const = default;
+};
+
+using Primitives = std::map<LitMaterial, Primitive>;
 
 /// Far from the origin floats would be too coarse; a node takes coordinates there in double.
 glm::dvec3 root_of(const Scene& scene) {
     constexpr double kNear = 4;  // extents: two bits of a float's 24
-    glm::dvec3 least(std::numeric_limits<double>::max()), most(-least);
-    for (const glm::dvec3& p : scene.positions) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
-    const glm::dvec3 middle = 0.5 * least + 0.5 * most;
-    return glm::length(middle) < kNear * glm::length(most - least) ? glm::dvec3(0) : middle;
+    const Bounds bounds = bounds_of(scene.positions);
+    const glm::dvec3 middle = bounds.middle();
+    return glm::length(middle) < kNear * bounds.diagonal() ? glm::dvec3(0) : middle;
 }
 
 glm::dvec3 normal_of(const Scene& scene, const std::array<std::uint32_t, 3>& vertices) {
@@ -98,7 +101,7 @@ std::map<std::uint32_t, Primitives> primitives_of(const Scene& scene,
     std::map<std::uint32_t, Primitives> objects;
     for (const UvTriangle& triangle : triangles) {
         const Face& face = scene.faces[triangle.face];
-        add_triangle(scene, triangle, root, objects[face.object][face.material]);
+        add_triangle(scene, triangle, root, objects[face.object][{face.material, triangle.atlas}]);
     }
     return objects;
 }
@@ -128,11 +131,7 @@ class Buffer {
 
     int add_positions(const std::vector<glm::vec3>& positions) {
         const int accessor = add(positions, "VEC3", kFloat, kArrayBuffer);
-        glm::vec3 least = positions[0], most = least;
-        for (const glm::vec3& p : positions) {
-            least = glm::min(least, p);
-            most = glm::max(most, p);
-        }
+        const auto [least, most] = bounds_of(positions);
         accessors_.back()["min"] = {least.x, least.y, least.z};
         accessors_.back()["max"] = {most.x, most.y, most.z};
         return accessor;
@@ -147,29 +146,6 @@ class Buffer {
     Json views_ = Json::array(), accessors_ = Json::array();
 };
 
-/// What the lightmap's largest value is: 1 in the PNG.
-double scale_of(const Lightmap& lightmap) {
-    float largest = 0;
-    for (const auto& band : lightmap.values)
-        for (const float value : band) largest = std::max(largest, value);
-    return largest > 0 ? double{largest} : 1.0;
-}
-
-std::string png_of(const Lightmap& lightmap, double scale) {
-    const ShownBands shown = shown_bands(lightmap.bands.size());
-    Picture picture{lightmap.width, lightmap.height, lightmap.bands.size() == 1 ? 1u : 3u, {}};
-    picture.pixels.reserve(lightmap.texel_count() * picture.channel_count);
-    for (std::size_t texel = 0; texel < lightmap.texel_count(); ++texel)
-        for (std::size_t channel = 0; channel < picture.channel_count; ++channel) {
-            const double part = double{lightmap.values[shown[channel]][texel]} / scale;
-            picture.pixels.push_back(
-                static_cast<unsigned char>(std::lround(255 * std::clamp(part, 0.0, 1.0))));
-        }
-    std::ostringstream stream;
-    write_png(stream, picture);
-    return stream.str();
-}
-
 Json spectrum(const std::vector<double>& values, const std::vector<std::string>& bands) {
     Json json = Json::object();
     for (std::size_t band = 0; band < bands.size(); ++band) json[bands[band]] = values[band];
@@ -177,7 +153,7 @@ Json spectrum(const std::vector<double>& values, const std::vector<std::string>&
 }
 
 Json material_json(const Material& material, const std::vector<std::string>& bands,
-                   double intensity) {
+                   std::uint32_t atlas, double intensity) {
     const ShownBands shown = shown_bands(bands.size());
     const auto shown_of = [&](const std::vector<double>& values) {
         return std::array{values[shown[0]], values[shown[1]], values[shown[2]]};
@@ -194,7 +170,8 @@ Json material_json(const Material& material, const std::vector<std::string>& ban
     if (*std::ranges::max_element(emission) > 0) json["emissiveFactor"] = emission;
     if (strength > 1)
         json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
-    json["extensions"]["MOZ_lightmap"] = {{"index", 0}, {"texCoord", 1}, {"intensity", intensity}};
+    json["extensions"]["MOZ_lightmap"] = {
+        {"index", atlas}, {"texCoord", 1}, {"intensity", intensity}};
     if (bands != std::vector<std::string>{"R", "G", "B"})
         json["extras"] = {{"reflectance", spectrum(material.reflectance, bands)},
                           {"emission", spectrum(material.emission, bands)}};
@@ -221,13 +198,15 @@ struct Contents {
 
 /// Nodes, meshes and materials, these in the scene's order as far as they are seen.
 void add_objects(Contents& to, const Scene& scene, const Mesh& mesh,
-                 const std::map<std::uint32_t, Primitives>& objects, double intensity,
-                 Buffer& buffer) {
-    std::map<std::uint32_t, int> materials;
+                 const std::map<std::uint32_t, Primitives>& objects,
+                 const std::vector<LightmapImage>& images, Buffer& buffer) {
+    std::map<LitMaterial, int> materials;
     for (const auto& [object, primitives] : objects)
         for (const auto& [material, primitive] : primitives) materials[material] = 0;
     for (int next = 0; auto& [material, index] : materials) {
-        to.materials.push_back(material_json(mesh.materials[material], mesh.bands, intensity));
+        const auto& [in_scene, atlas] = material;
+        to.materials.push_back(
+            material_json(mesh.materials[in_scene], mesh.bands, atlas, images[atlas].intensity));
         index = next++;
     }
     for (const auto& [object, primitives] : objects) {
@@ -278,18 +257,22 @@ void add_contents(Json& gltf, Contents contents, const glm::dvec3& root) {
     if (!contents.cameras.empty()) gltf["cameras"] = std::move(contents.cameras);
 }
 
-/// The lightmap as texture 0.
-void add_lightmap(Json& gltf, const std::string& png, Buffer& buffer) {
-    const int view = buffer.add_view(png);
-    const Json image{{"name", "lightmap"}, {"mimeType", "image/png"}, {"bufferView", view}};
+/// A texture an atlas, of its number.
+void add_lightmaps(Json& gltf, const std::vector<LightmapImage>& images, Buffer& buffer) {
     const Json sampler{{"magFilter", kLinear},
                        {"minFilter", kLinear},
                        {"wrapS", kClampToEdge},
                        {"wrapT", kClampToEdge}};
-    const Json texture{{"name", "lightmap"}, {"sampler", 0}, {"source", 0}};
-    gltf["images"] = Json::array({image});
+    Json list = Json::array(), textures = Json::array();
+    for (std::uint32_t atlas = 0; atlas < images.size(); ++atlas) {
+        const std::string name = atlas_file("lightmap", atlas).string();
+        const int view = buffer.add_view(images[atlas].png);
+        list.push_back({{"name", name}, {"mimeType", "image/png"}, {"bufferView", view}});
+        textures.push_back({{"name", name}, {"sampler", 0}, {"source", atlas}});
+    }
+    gltf["images"] = std::move(list);
     gltf["samplers"] = Json::array({sampler});
-    gltf["textures"] = Json::array({texture});
+    gltf["textures"] = std::move(textures);
 }
 
 void add_extensions(Json& gltf) {
@@ -341,17 +324,17 @@ void write_text(std::ostream& stream, Json gltf, const std::string& bytes) {
 
 void write_gltf(const std::filesystem::path& path, const Scene& scene, const Mesh& mesh,
                 const std::vector<Camera>& cameras, const std::vector<UvTriangle>& triangles,
-                const Lightmap& lightmap, const std::filesystem::path& exr) {
+                const std::vector<LightmapImage>& images, const std::filesystem::path& exr) {
     Buffer buffer;
     const glm::dvec3 root = root_of(scene);
-    const double scale = scale_of(lightmap);
     Json gltf{{"asset", {{"version", "2.0"}, {"generator", "hemirad"}}}};
-    gltf["asset"]["extras"]["hemirad"]["exr"] = exr.generic_string();
+    gltf["asset"]["extras"]["hemirad"] = {{"exr", exr.generic_string()},
+                                          {"atlases", images.size()}};
     Contents contents;
-    add_objects(contents, scene, mesh, primitives_of(scene, triangles, root), scale, buffer);
+    add_objects(contents, scene, mesh, primitives_of(scene, triangles, root), images, buffer);
     add_cameras(contents, cameras, root);
     add_contents(gltf, std::move(contents), root);
-    add_lightmap(gltf, png_of(lightmap, scale), buffer);
+    add_lightmaps(gltf, images, buffer);
     add_extensions(gltf);
     gltf["accessors"] = buffer.accessors();
     gltf["bufferViews"] = buffer.views();

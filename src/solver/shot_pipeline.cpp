@@ -266,6 +266,7 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     rows_ = acu_.unset_plural<float>((std::size_t{row_capacity_} + salvo_) * stride_);
     row_escaped_ = acu_.plural<float>(row_capacity_ + salvo_);
     row_of_ = acu_.plural<std::int32_t>(shooter_stride_);
+    shots_of_ = acu_.plural<std::uint32_t>(settings.count_shots ? shooter_stride_ : 0);
     summaries_ = acu_.plural<device::BlockSummary>(blocks);
     block_unshot_ = acu_.plural<float>(blocks * band_count_);
 }
@@ -431,7 +432,7 @@ void ShotPipeline::choose_shooter() {
                std::int32_t(summaries_.size()), unshot_, std::int32_t(shooter_stride_),
                band_weight_, tolerance_, std::int32_t(disk_proxels_), proxel_count_,
                std::int32_t(stride_), escaped_, shot_flux_, std::int32_t(row_capacity_), row_of_,
-               row_escaped_);
+               row_escaped_, std::int32_t(shots_of_.size() > 0), shots_of_);
 }
 
 device::Shot ShotPipeline::shot() {
@@ -515,6 +516,8 @@ std::vector<double> ShotPipeline::escaped() {
         result[band] = double{sums[band]} + sums[band_count_ + band];
     return result;
 }
+
+std::vector<std::uint32_t> ShotPipeline::shots_of() { return acu_.unload(shots_of_); }
 
 std::vector<std::int32_t> ShotPipeline::proxel_counts() {
     auto counts = acu_.unload(proxel_count_);

@@ -51,6 +51,7 @@ struct PipelineSettings {
     bool timed = false;
     bool apart = false;  ///< every kernel launched by itself, to be timed
     Variants variants;
+    bool count_shots = false;     ///< of each shooter, for shots_of()
     bool count_activity = false;  ///< activity() after each projection
     bool keep_owners = false;     ///< for tests: owners() after each projection
 };
@@ -112,9 +113,10 @@ class ShotPipeline {
     /// After kBinsFull: makes room for the lists and lets the halted salvo be repeated.
     void enlarge_lists();
 
-    std::vector<double> received();  ///< [band * stride + patch], of the emitted flux
-    std::vector<float> unshot();     ///< [band * shooter_stride + shooter]
-    std::vector<double> escaped();   ///< [band]
+    std::vector<double> received();         ///< [band * stride + patch], of the emitted flux
+    std::vector<float> unshot();            ///< [band * shooter_stride + shooter]
+    std::vector<double> escaped();          ///< [band]
+    std::vector<std::uint32_t> shots_of();  ///< [shooter] that it made; empty unless count_shots
     /// Of the hemispheres since the last shot; after the patches' (stride()) those that escaped.
     std::vector<std::int32_t> proxel_counts();
     void clear_counts();
@@ -189,7 +191,7 @@ class ShotPipeline {
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
     mp1map::Plural<std::int32_t> row_of_;  // [shooter] its row + 1; 0: it has none
     mp1map::Plural<float> rows_, row_escaped_;
-    mp1map::Plural<std::uint32_t> activity_;
+    mp1map::Plural<std::uint32_t> activity_, shots_of_;
     mp1map::Plural<device::BlockSummary> summaries_;
 };
 

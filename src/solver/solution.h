@@ -33,6 +33,8 @@ struct Solution {
     /// As asked for: lights add up to the whole, direct and indirect light do, too.
     std::vector<SolutionPart> parts = {};
     std::uint64_t shots = 0;
+    /// [patch] those that it made, all elements of one that shoots alike; empty unless counted.
+    std::vector<std::uint32_t> shots_of = {};
     double unshot_fraction = 0;  ///< unshot / emitted flux, the largest of the bands
     bool converged = false;      ///< false: stopped by a limit
 };

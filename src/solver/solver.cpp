@@ -35,6 +35,14 @@ std::vector<Shooter> shooters_of(const Mesh& mesh) {
     return shooters;
 }
 
+std::vector<std::uint32_t> by_patch(const Mesh& mesh, const std::vector<std::uint32_t>& shots_of) {
+    std::vector<std::uint32_t> result(mesh.patches.size());
+    const auto shooters = shooters_of(mesh);
+    for (std::size_t i = 0; i < shooters.size(); ++i)
+        std::fill_n(result.begin() + shooters[i].first_patch, shooters[i].patch_count, shots_of[i]);
+    return result;
+}
+
 double area_of(const Mesh& mesh, const Shooter& shooter) {
     double area = 0;
     for (std::uint32_t i = 0; i < shooter.patch_count; ++i)
@@ -96,6 +104,7 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
     result.variants = settings.variants;
     result.kernels_dir = settings.kernels_dir;
     result.timed = settings.timed;
+    result.count_shots = settings.count_shots;
     return result;
 }
 
@@ -259,6 +268,7 @@ Solution ProgressiveSolver::solution() {
                           {pipeline_.stride(), pipeline_.shooter_stride(), pipeline_.received(),
                            pipeline_.unshot(), pipeline_.escaped()});
     solution.shots = state.shots;
+    if (settings_.count_shots) solution.shots_of = by_patch(mesh_, pipeline_.shots_of());
     solution.unshot_fraction = state.unshot_fraction;
     solution.converged = state.status == kConverged || state.status == kExhausted;
     return solution;

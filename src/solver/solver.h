@@ -40,6 +40,7 @@ struct SolverSettings {
     Variants variants = {};
     std::optional<std::filesystem::path> kernels_dir = {};  ///< read kernels from here
     bool timed = false;                                     ///< keep the seconds of each kernel
+    bool count_shots = false;  ///< for Solution::shots_of; changes no bit
     PartSettings parts = {};  ///< more bands to solve; those of direct light change no other's bits
 };
 

@@ -38,4 +38,12 @@ double round_above(double value) {
     return 10 * power;
 }
 
+double scale_end(std::vector<double> values) {
+    constexpr double kNearlyAll = 0.99;
+    if (values.empty()) return 1;
+    const auto rank = static_cast<std::ptrdiff_t>(kNearlyAll * double(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return round_above(values[static_cast<std::size_t>(rank)]);
+}
+
 }  // namespace hemirad

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace hemirad {
 
@@ -16,5 +17,9 @@ Colour false_colour(double value);
 
 /// The least of 1, 1.5, 2, 2.5, 3, 4, 5, 6 and 8 times a power of ten that is not below the value.
 double round_above(double value);
+
+/// Where a scale ends that shows these values: a round number that nearly all are below, so that
+/// specks do not stretch it; 1 where there are none.
+double scale_end(std::vector<double> values);
 
 }  // namespace hemirad

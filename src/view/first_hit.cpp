@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 
 namespace hemirad {
@@ -16,6 +16,7 @@ constexpr std::uint32_t kLeafFaces = 4;
 /// Of a box, relative to its distance: wider than what rounds in the slab test.
 constexpr double kBoxPlay = 1e-12;
 
+// Of its twin in src/reference nothing is shared: that one is an oracle.
 // A ray within the face of a slab gives 0 * inf: no limit of that axis.
 bool may_meet(const dvec3& least, const dvec3& most, const dvec3& origin, const dvec3& inverse,
               double before) {
@@ -38,28 +39,16 @@ FirstHit::FirstHit(const Scene& scene) : scene_(scene), order_(scene.faces.size(
     if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
 }
 
-FirstHit::Box FirstHit::box_of(std::uint32_t face) const {
-    Box box;
-    for (const std::uint32_t v : scene_.faces[face].vertices) {
-        box.least = glm::min(box.least, scene_.positions[v]);
-        box.most = glm::max(box.most, scene_.positions[v]);
-    }
+Bounds FirstHit::box_of(std::uint32_t face) const {
+    Bounds box;
+    for (const std::uint32_t v : scene_.faces[face].vertices) box.take_in(scene_.positions[v]);
     return box;
-}
-
-dvec3 FirstHit::middle_of(std::uint32_t face) const {
-    const Box box = box_of(face);
-    return 0.5 * box.least + 0.5 * box.most;
 }
 
 void FirstHit::build(std::uint32_t first, std::uint32_t count) {
     const auto begin = order_.begin() + first, end = begin + count;
-    Box box;
-    for (auto face = begin; face != end; ++face) {
-        const Box own = box_of(*face);
-        box.least = glm::min(box.least, own.least);
-        box.most = glm::max(box.most, own.most);
-    }
+    Bounds box;
+    for (auto face = begin; face != end; ++face) box.take_in(box_of(*face));
     const std::size_t at = nodes_.size();
     nodes_.push_back({box, first, count, 0});
     if (count <= kLeafFaces) return;
@@ -68,7 +57,7 @@ void FirstHit::build(std::uint32_t first, std::uint32_t count) {
                      : extent.y >= extent.z                       ? 1
                                                                   : 2;
     std::nth_element(begin, begin + count / 2, end, [&](std::uint32_t a, std::uint32_t b) {
-        return middle_of(a)[axis] < middle_of(b)[axis];
+        return box_of(a).middle()[axis] < box_of(b).middle()[axis];
     });
     nodes_[at].count = 0;
     build(first, count / 2);

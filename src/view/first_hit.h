@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "scene/bounds.h"
 #include "scene/scene.h"
 
 namespace hemirad {
@@ -28,19 +28,14 @@ class FirstHit {
     std::optional<Hit> operator()(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
   private:
-    struct Box {
-        glm::dvec3 least{std::numeric_limits<double>::infinity()};
-        glm::dvec3 most{-std::numeric_limits<double>::infinity()};
-    };
     struct Node {
-        Box box;
+        Bounds box;
         std::uint32_t first, count;  ///< of order_; a leaf where count > 0
         std::uint32_t second_child;  ///< the first child follows its parent
     };
 
     void build(std::uint32_t first, std::uint32_t count);
-    Box box_of(std::uint32_t face) const;
-    glm::dvec3 middle_of(std::uint32_t face) const;
+    Bounds box_of(std::uint32_t face) const;
     void meet(std::uint32_t face, const glm::dvec3& origin, const glm::dvec3& direction,
               std::optional<Hit>& nearest) const;
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <set>
 
 #include "errors.h"
+#include "lightmap/atlas_file.h"
 #include "lightmap/read_exr.h"
 #include "scene/gltf_file.h"
 #include "scene/read_scene.h"
@@ -18,26 +19,46 @@ namespace fs = std::filesystem;
     throw InputError(printable(file.filename().string()) + ": " + reason);
 }
 
-/// asset.extras.hemirad.exr
-std::string exr_named_in(const Json& gltf) {
-    const Json* at = &gltf;
-    for (const char* key : {"asset", "extras", "hemirad", "exr"}) {
-        if (!at->is_object() || !at->contains(key)) return "";
-        at = &(*at)[key];
-    }
-    return at->is_string() ? at->get<std::string>() : "";
+Json json_of(const fs::path& gltf) {
+    const InputFile file = read_input_file(gltf);
+    return load_gltf(file).json;
 }
 
-fs::path exr_of(const fs::path& gltf) {
-    const InputFile file = read_input_file(gltf);
-    const std::string name = exr_named_in(load_gltf(file).json);
-    if (name.empty()) fail(gltf, "names no lightmap in asset.extras.hemirad.exr; --lightmap does");
+fs::path exr_of(const fs::path& gltf, const Json& json) {
+    const Json::json_pointer at("/asset/extras/hemirad/exr");
+    if (!json.contains(at) || !json[at].is_string() || json[at] == "")
+        fail(gltf, "names no lightmap in asset.extras.hemirad.exr; --lightmap does");
+    const auto name = json[at].get<std::string>();
     // A reference in glTF would be a URI; this is a file's name.
     const fs::path relative(name);
     if (relative.is_absolute() || *relative.lexically_normal().begin() == "..")
         fail(gltf, "its lightmap \"" + printable(name) +
                        "\" is not in its folder; --lightmap says which to take");
     return gltf.parent_path() / relative;
+}
+
+/// One where the file says nothing of atlases: another program's, with a lightmap from elsewhere.
+std::size_t atlas_count_in(const Json& json, const fs::path& gltf) {
+    const Json::json_pointer at("/asset/extras/hemirad/atlases");
+    if (!json.contains(at)) return 1;
+    const std::size_t textures = json.contains("textures") ? json["textures"].size() : 0;
+    if (!json[at].is_number_unsigned() || json[at] < 1u || json[at] > textures)
+        fail(gltf, "asset.extras.hemirad.atlases is no number of its textures");
+    return json[at].get<std::size_t>();
+}
+
+/// By material; the first textures are the atlases.
+std::vector<std::uint32_t> atlases_of(const Scene& scene, const Json& json, std::size_t count,
+                                      const fs::path& gltf) {
+    std::vector<std::uint32_t> atlas_of(scene.materials.size());
+    for (std::size_t i = 0; i < atlas_of.size() && count > 1; ++i) {
+        const std::string material = "materials/" + std::to_string(i);
+        const Json::json_pointer at("/" + material + "/extensions/MOZ_lightmap/index");
+        if (!json.contains(at) || !json[at].is_number_unsigned() || json[at] >= count)
+            fail(gltf, material + ": its MOZ_lightmap is none of the atlases");
+        atlas_of[i] = json[at].get<std::uint32_t>();
+    }
+    return atlas_of;
 }
 
 void require_uvs(const fs::path& gltf, const Scene& scene) {
@@ -48,13 +69,9 @@ void require_uvs(const fs::path& gltf, const Scene& scene) {
     fail(gltf, "is not solved; hemirad solve SCENE -o SOLVED.glb makes a scene with its light");
 }
 
-struct Named {
-    fs::path file;
-    std::uint64_t shots;
-};
-
-std::vector<Named> snapshots_beside(const fs::path& exr) {
-    std::vector<Named> found;
+/// After which shots pictures were kept.
+std::set<std::uint64_t> shots_kept(const fs::path& exr) {
+    std::set<std::uint64_t> found;
     const std::string prefix = exr.stem().string() + "-";
     const fs::path folder = exr.has_parent_path() ? exr.parent_path() : ".";
     std::error_code ignored;
@@ -64,15 +81,44 @@ std::vector<Named> snapshots_beside(const fs::path& exr) {
         const char *first = stem.data() + prefix.size(), *last = stem.data() + stem.size();
         std::uint64_t shots = 0;
         const auto [rest, fault] = std::from_chars(first, last, shots);
-        if (fault == std::errc() && rest == last) found.push_back({entry.path(), shots});
+        if (fault == std::errc() && rest == last) found.insert(shots);
     }
-    std::ranges::sort(found, {}, &Named::shots);
     return found;
 }
 
 std::string text_in(const ExrLightmap& exr, const std::string& name) {
     const auto found = exr.attributes.find(name);
     return found == exr.attributes.end() ? "" : found->second;
+}
+
+/// An atlas more. A file of another solve may have been left beside the first.
+void add_lightmap(LitScene& lit, const fs::path& file) {
+    ExrLightmap read = read_exr(file, lit.scene.bands);
+    const auto quantity =
+        text_in(read, "quantity") == "radiosity" ? Quantity::radiosity : Quantity::irradiance;
+    const std::string settings = text_in(read, "settings");
+    if (!lit.lightmaps.empty() && (settings != lit.settings || quantity != lit.quantity))
+        fail(file, "is not of the solve that " + printable(lit.exr.filename().string()) + " is of");
+    lit.settings = settings;
+    lit.quantity = quantity;
+    lit.lightmaps.push_back(std::move(read.lightmap));
+}
+
+/// None where an atlas is missing, or of another solve.
+std::optional<Snapshot> read_snapshot(const LitScene& lit, std::uint64_t shots) try {
+    Snapshot snapshot{shots, {}};
+    for (std::uint32_t atlas = 0; atlas < lit.lightmaps.size(); ++atlas) {
+        ExrLightmap read =
+            read_exr(snapshot_file(atlas_file(lit.exr, atlas), shots), lit.scene.bands);
+        if (read.lightmap.width != lit.lightmaps[atlas].width ||
+            read.lightmap.height != lit.lightmaps[atlas].height ||
+            text_in(read, "settings") != lit.settings)
+            return {};
+        snapshot.lightmaps.push_back(std::move(read.lightmap));
+    }
+    return snapshot;
+} catch (const InputError&) {
+    return {};
 }
 
 }  // namespace
@@ -82,11 +128,12 @@ LitScene read_lit_scene(const fs::path& gltf, const std::optional<fs::path>& exr
     lit.scene = read_scene(gltf);
     require_uvs(gltf, lit.scene);
     lit.cameras = read_cameras(gltf);
-    lit.exr = exr ? *exr : exr_of(gltf);
-    ExrLightmap read = read_exr(lit.exr, lit.scene.bands);
-    lit.lightmap = std::move(read.lightmap);
-    lit.settings = text_in(read, "settings");
-    if (text_in(read, "quantity") == "radiosity") lit.quantity = Quantity::radiosity;
+    const Json json = json_of(gltf);
+    lit.exr = exr ? *exr : exr_of(gltf, json);
+    const std::size_t count = atlas_count_in(json, gltf);
+    lit.atlas_of = atlases_of(lit.scene, json, count, gltf);
+    for (std::uint32_t atlas = 0; atlas < count; ++atlas)
+        add_lightmap(lit, atlas_file(lit.exr, atlas));
     return lit;
 }
 
@@ -99,15 +146,8 @@ fs::path snapshot_file(const fs::path& exr, std::uint64_t shots) {
 
 std::vector<Snapshot> read_snapshots(const LitScene& scene) {
     std::vector<Snapshot> snapshots;
-    for (const auto& [file, shots] : snapshots_beside(scene.exr)) try {
-            ExrLightmap read = read_exr(file, scene.scene.bands);
-            if (read.lightmap.width == scene.lightmap.width &&
-                read.lightmap.height == scene.lightmap.height &&
-                text_in(read, "settings") == scene.settings)
-                snapshots.push_back({shots, std::move(read.lightmap)});
-        } catch (const InputError&) {
-            continue;
-        }
+    for (const std::uint64_t shots : shots_kept(scene.exr))
+        if (auto snapshot = read_snapshot(scene, shots)) snapshots.push_back(std::move(*snapshot));
     return snapshots;
 }
 

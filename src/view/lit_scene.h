@@ -15,28 +15,29 @@ namespace hemirad {
 struct LitScene {
     Scene scene;
     std::vector<Camera> cameras;
-    Lightmap lightmap;
-    Quantity quantity = Quantity::irradiance;  ///< of the lightmap
-    std::filesystem::path exr;                 ///< where the lightmap lay
-    std::string settings;                      ///< that it was solved with, as its header says
+    std::vector<Lightmap> lightmaps;           ///< by atlas
+    std::vector<std::uint32_t> atlas_of;       ///< by material: where the light of its faces is
+    Quantity quantity = Quantity::irradiance;  ///< of the lightmaps
+    std::filesystem::path exr;                 ///< where the first one lay, see atlas_file()
+    std::string settings;                      ///< that they were solved with, as their headers say
 };
 
 /// `exr`: instead of the file that the glTF names, which lies in the glTF's folder or below.
-/// Throws InputError.
+/// Throws InputError, also where atlases were not solved with the same settings.
 LitScene read_lit_scene(const std::filesystem::path& gltf,
                         const std::optional<std::filesystem::path>& exr);
 
 /// An interim picture that was kept.
 struct Snapshot {
     std::uint64_t shots = 0;
-    Lightmap lightmap;
+    std::vector<Lightmap> lightmaps;  ///< by atlas
 };
 
 /// The file in which the picture after so many shots is kept: NAME-SHOTS.exr beside NAME.exr.
 std::filesystem::path snapshot_file(const std::filesystem::path& exr, std::uint64_t shots);
 
-/// Those that lie beside the scene's lightmap and are of the same size, scene and settings, by
-/// shots. Others are left out, and so is what cannot be read.
+/// Those that lie beside the scene's lightmaps and are of the same size, scene and settings, by
+/// shots. Others are left out, and so is what cannot be read or lacks an atlas.
 std::vector<Snapshot> read_snapshots(const LitScene& scene);
 
 }  // namespace hemirad

@@ -78,10 +78,12 @@ function scaleShader() {
 }
 
 const shared = {
-    texels: {value: null}, size: {value: new THREE.Vector2(lit.width, lit.height)},
     isRadiosity: {value: lit.quantity === "radiosity"}, isWhole: {value: true},
     show: {value: 0}, exposure: {value: 1}, largest: {value: lit.largest},
 };
+
+const atlases = lit.atlases.map(({width, height}) => (
+    {texels: {value: null}, size: {value: new THREE.Vector2(width, height)}}));
 
 function meshOf(material, positions, uvs) {
     const geometry = new THREE.BufferGeometry();
@@ -91,7 +93,7 @@ function meshOf(material, positions, uvs) {
     const uniforms = Object.assign({
         reflectance: {value: new THREE.Vector3(...material.reflectance)},
         emission: {value: new THREE.Vector3(...material.emission)},
-    }, shared);
+    }, shared, atlases[material.atlas]);
     // Of one band shown as three the sum is that band.
     const fragment = FRAGMENT.replace("SCALE", scaleShader)
         .replace("BANDS", lit.isGrey ? "0.33333333" : "1.0");
@@ -105,10 +107,10 @@ const uvs = new THREE.BufferAttribute(float32(lit.uvs), 2);
 for (const material of lit.materials) scene.add(meshOf(material, positions, uvs));
 
 const pictures = new Map();
-async function pictureOf(packed) {
+async function pictureOf(packed, {width, height}) {
     if (pictures.has(packed)) return pictures.get(packed);
     const bytes = new Uint8Array(await inflated(packed));
-    const texture = new THREE.DataTexture(bytes, lit.width, lit.height, THREE.RGBAFormat);
+    const texture = new THREE.DataTexture(bytes, width, height, THREE.RGBAFormat);
     texture.magFilter = texture.minFilter = THREE.NearestFilter;
     texture.needsUpdate = true;
     pictures.set(packed, texture);
@@ -184,8 +186,9 @@ async function show() {
     const time = Number(element("time").value);
     const isFinal = time >= snapshots.length;
     const layer = lit.layers[isFinal ? Number(element("layer").value) : 0];
-    const texture = await pictureOf(isFinal ? layer.texels : snapshots[time].texels);
-    shared.texels.value = texture;
+    const texels = isFinal ? layer.texels : snapshots[time].texels;
+    const textures = await Promise.all(texels.map((packed, i) => pictureOf(packed, lit.atlases[i])));
+    textures.forEach((texture, i) => { atlases[i].texels.value = texture; });
     shared.isWhole.value = !isFinal || layer === lit.layers[0];
     shared.show.value = element("show").selectedIndex;
     shared.exposure.value = lit.exposure * 2 ** Number(element("exposure").value);

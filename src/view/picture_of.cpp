@@ -31,16 +31,11 @@ double sum_at(const Lightmap& rendered, std::size_t pixel) {
     return sum;
 }
 
-/// Nearly all pixels are below: specks do not stretch the scale.
 double largest_of(const Lightmap& rendered) {
-    constexpr double kNearlyAll = 0.99;
     std::vector<double> sums;
     for (std::size_t pixel = 0; pixel < rendered.texel_count(); ++pixel)
         if (rendered.coverage[pixel] > 0) sums.push_back(sum_at(rendered, pixel));
-    if (sums.empty()) return 1;
-    const auto rank = static_cast<std::ptrdiff_t>(kNearlyAll * double(sums.size() - 1));
-    std::nth_element(sums.begin(), sums.begin() + rank, sums.end());
-    return round_above(sums[static_cast<std::size_t>(rank)]);
+    return scale_end(std::move(sums));
 }
 
 /// What a pixel shows beside its part of the scene is black.

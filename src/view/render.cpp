@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "errors.h"
+#include "lightmap/atlas_file.h"
 #include "scene/printable.h"
 #include "view/first_hit.h"
 
@@ -16,15 +17,23 @@ namespace {
 
 using Bands = std::vector<std::vector<float>>;
 
-const Bands& bands_of(const LitScene& lit, const std::string& layer) {
-    if (layer.empty()) return lit.lightmap.values;
-    const auto found = lit.lightmap.layers.find(layer);
-    if (found != lit.lightmap.layers.end()) return found->second.values;
+const Bands& bands_of(const Lightmap& lightmap, const std::string& layer,
+                      const std::filesystem::path& exr) {
+    if (layer.empty()) return lightmap.values;
+    const auto found = lightmap.layers.find(layer);
+    if (found != lightmap.layers.end()) return found->second.values;
     std::string names;
-    for (const auto& [name, values] : lit.lightmap.layers)
-        names += (names.empty() ? "" : ", ") + name;
-    throw InputError(printable(lit.exr.string()) + ": has no layer \"" + printable(layer) +
+    for (const auto& [name, values] : lightmap.layers) names += (names.empty() ? "" : ", ") + name;
+    throw InputError(printable(exr.string()) + ": has no layer \"" + printable(layer) +
                      "\"; it has " + (names.empty() ? "none" : names));
+}
+
+/// By atlas.
+std::vector<const Bands*> bands_of(const LitScene& lit, const std::string& layer) {
+    std::vector<const Bands*> bands;
+    for (std::uint32_t atlas = 0; atlas < lit.lightmaps.size(); ++atlas)
+        bands.push_back(&bands_of(lit.lightmaps[atlas], layer, atlas_file(lit.exr, atlas)));
+    return bands;
 }
 
 /// The four texels about a place, and their shares.
@@ -100,7 +109,7 @@ class Renderer {
 
     void render_pixel(std::uint32_t x, std::uint32_t y) {
         const std::uint32_t n = settings_.samples;
-        std::vector<double> sums(bands_.size());
+        std::vector<double> sums(picture_.bands.size());
         std::uint32_t hits = 0;
         for (std::uint32_t i = 0; i < n * n; ++i) {
             const double at_x = (x + (i % n + 0.5) / n) / settings_.width;
@@ -121,9 +130,10 @@ class Renderer {
         const Material& material = lit_.scene.materials[face.material];
         glm::dvec2 uv(0);
         for (int i = 0; i < 3; ++i) uv += hit.weights[i] * face.lightmap_uvs[std::size_t(i)];
-        const Blend blend = blend_at(lit_.lightmap, uv);
+        const std::uint32_t atlas = lit_.atlas_of[face.material];
+        const Blend blend = blend_at(lit_.lightmaps[atlas], uv);
         for (std::size_t band = 0; band < sums.size(); ++band)
-            sums[band] += seen(blend.of(bands_[band]), material, band);
+            sums[band] += seen(blend.of((*bands_[atlas])[band]), material, band);
     }
 
     double seen(double light, const Material& material, std::size_t band) const {
@@ -135,7 +145,7 @@ class Renderer {
 
     const LitScene& lit_;
     const RenderSettings& settings_;
-    const Bands& bands_;
+    std::vector<const Bands*> bands_;  ///< by atlas
     Rays rays_;
     FirstHit first_hit_;
     Lightmap picture_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "lightmap/base64.h"
 #include "lightmap/deflate.h"
 #include "lightmap/tone.h"
+#include "scene/bounds.h"
 #include "view/false_colour.h"
 #include "view/page_parts.h"
 
@@ -58,12 +58,8 @@ struct Ball {
 };
 
 Ball around(const Scene& scene) {
-    glm::dvec3 least = scene.positions[0], most = least;
-    for (const glm::dvec3& p : scene.positions) {
-        least = glm::min(least, p);
-        most = glm::max(most, p);
-    }
-    return {0.5 * least + 0.5 * most, glm::length(most - least) / 2};
+    const Bounds bounds = bounds_of(scene.positions);
+    return {bounds.middle(), bounds.diagonal() / 2};
 }
 
 std::vector<double> shown_of(const std::vector<double>& spectrum) {
@@ -91,15 +87,16 @@ Vertices vertices_of(const Scene& scene, const Ball& ball) {
     return vertices;
 }
 
-void add_triangles(Json& json, const Scene& scene, const Ball& ball) {
-    const Vertices vertices = vertices_of(scene, ball);
+void add_triangles(Json& json, const LitScene& lit, const Ball& ball) {
+    const Vertices vertices = vertices_of(lit.scene, ball);
     json["positions"] = packed(vertices.positions);
     json["uvs"] = packed(vertices.uvs);
     json["materials"] = Json::array();
     for (const auto& [index, corners] : vertices.of_material) {
-        const Material& material = scene.materials[index];
+        const Material& material = lit.scene.materials[index];
         json["materials"].push_back({{"reflectance", shown_of(material.reflectance)},
                                      {"emission", shown_of(material.emission)},
+                                     {"atlas", lit.atlas_of[index]},
                                      {"indices", packed(corners)}});
     }
 }
@@ -121,15 +118,18 @@ Json cameras_json(const LitScene& lit, const Ball& ball) {
     return cameras;
 }
 
-std::vector<double> luminances_of(const Lightmap& lightmap) {
-    const ShownBands shown = shown_bands(lightmap.bands.size());
-    std::vector<double> luminances;
-    for (std::size_t texel = 0; texel < lightmap.texel_count(); ++texel)
-        if (lightmap.coverage[texel] > 0)
-            luminances.push_back(luminance(lightmap.values[shown[0]][texel],
-                                           lightmap.values[shown[1]][texel],
-                                           lightmap.values[shown[2]][texel]));
-    return luminances;
+/// What `value_of` makes of red, green and blue of each texel that shows something.
+template <class ValueOf>
+std::vector<double> of_texels(const LitScene& lit, const ValueOf& value_of) {
+    const ShownBands shown = shown_bands(lit.scene.bands.size());
+    std::vector<double> values;
+    for (const Lightmap& lightmap : lit.lightmaps)
+        for (std::size_t texel = 0; texel < lightmap.texel_count(); ++texel)
+            if (lightmap.coverage[texel] > 0)
+                values.push_back(value_of(double{lightmap.values[shown[0]][texel]},
+                                          double{lightmap.values[shown[1]][texel]},
+                                          double{lightmap.values[shown[2]][texel]}));
+    return values;
 }
 
 /// Of all surfaces, by area.
@@ -146,42 +146,55 @@ double mean_reflectance(const Scene& scene) {
 }
 
 double exposure_of(const LitScene& lit) {
-    const double of_lightmap = exposure_for(luminances_of(lit.lightmap));
+    const double of_lightmap = exposure_for(of_texels(lit, luminance));
     const double reflected =
         lit.quantity == Quantity::radiosity ? 1.0 : mean_reflectance(lit.scene);
     return of_lightmap * std::numbers::pi / reflected;
 }
 
-/// The scale of false colours ends where nearly all texels are below.
-double largest_of(const Lightmap& lightmap) {
-    constexpr double kNearlyAll = 0.99;
-    std::vector<double> sums;
-    const ShownBands shown = shown_bands(lightmap.bands.size());
-    for (std::size_t texel = 0; texel < lightmap.texel_count(); ++texel)
-        if (lightmap.coverage[texel] > 0) {
-            double sum = 0;
-            for (const std::size_t band : shown) sum += lightmap.values[band][texel];
-            sums.push_back(lightmap.bands.size() == 1 ? sum / 3 : sum);
-        }
-    if (sums.empty()) return 1;
-    const auto rank = static_cast<std::ptrdiff_t>(kNearlyAll * double(sums.size() - 1));
-    std::nth_element(sums.begin(), sums.begin() + rank, sums.end());
-    return round_above(sums[static_cast<std::size_t>(rank)]);
+double largest_of(const LitScene& lit) {
+    const bool grey = lit.scene.bands.size() == 1;
+    return scale_end(of_texels(lit, [&](double red, double green, double blue) {
+        return (red + green + blue) / (grey ? 3 : 1);
+    }));
 }
 
-Json layers_json(const Lightmap& lightmap) {
+/// By atlas.
+Json texels_of(const std::vector<Lightmap>& lightmaps) {
+    Json list = Json::array();
+    for (const Lightmap& lightmap : lightmaps) list.push_back(texels_of(lightmap.values));
+    return list;
+}
+
+bool is_in_all(const std::vector<Lightmap>& lightmaps, const std::string& layer) {
+    return std::ranges::all_of(
+        lightmaps, [&](const Lightmap& lightmap) { return lightmap.layers.contains(layer); });
+}
+
+Json layers_json(const std::vector<Lightmap>& lightmaps) {
     Json layers = Json::array();
-    layers.push_back({{"name", "all"}, {"texels", texels_of(lightmap.values)}});
-    for (const auto& [name, layer] : lightmap.layers)
-        layers.push_back({{"name", name}, {"texels", texels_of(layer.values)}});
+    layers.push_back({{"name", "all"}, {"texels", texels_of(lightmaps)}});
+    for (const auto& [name, layer] : lightmaps[0].layers) {
+        if (!is_in_all(lightmaps, name)) continue;
+        Json texels = Json::array();
+        for (const Lightmap& lightmap : lightmaps)
+            texels.push_back(texels_of(lightmap.layers.at(name).values));
+        layers.push_back({{"name", name}, {"texels", std::move(texels)}});
+    }
     return layers;
+}
+
+Json atlases_json(const std::vector<Lightmap>& lightmaps) {
+    Json list = Json::array();
+    for (const Lightmap& lightmap : lightmaps)
+        list.push_back({{"width", lightmap.width}, {"height", lightmap.height}});
+    return list;
 }
 
 Json snapshots_json(const std::vector<Snapshot>& snapshots) {
     Json list = Json::array();
     for (const Snapshot& snapshot : snapshots)
-        list.push_back(
-            {{"shots", snapshot.shots}, {"texels", texels_of(snapshot.lightmap.values)}});
+        list.push_back({{"shots", snapshot.shots}, {"texels", texels_of(snapshot.lightmaps)}});
     return list;
 }
 
@@ -189,17 +202,16 @@ Json page_json(const LitScene& lit, const std::vector<Snapshot>& snapshots) {
     const Ball ball = around(lit.scene);
     Json json{{"name", lit.scene.file},
               {"quantity", lit.quantity == Quantity::radiosity ? "radiosity" : "irradiance"},
-              {"isGrey", lit.lightmap.bands.size() == 1},
-              {"width", lit.lightmap.width},
-              {"height", lit.lightmap.height},
+              {"isGrey", lit.scene.bands.size() == 1},
               {"radius", ball.radius},
               {"exposure", exposure_of(lit)},
-              {"largest", largest_of(lit.lightmap)},
+              {"largest", largest_of(lit)},
               {"colours", std::vector<Colour>(false_colours().begin(), false_colours().end())}};
     json["cameras"] = cameras_json(lit, ball);
-    json["layers"] = layers_json(lit.lightmap);
+    json["atlases"] = atlases_json(lit.lightmaps);
+    json["layers"] = layers_json(lit.lightmaps);
     json["snapshots"] = snapshots_json(snapshots);
-    add_triangles(json, lit.scene, ball);
+    add_triangles(json, lit, ball);
     return json;
 }
 

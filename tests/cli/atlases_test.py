@@ -2,16 +2,11 @@
 """Charts of the scene's own, several atlases, and what is said of those that do not fit."""
 import base64
 import json
-import os
-import pathlib
 import struct
-import subprocess
-import tempfile
 import unittest
 
 import scenes
 
-HEMIRAD = os.environ["HEMIRAD"]
 QUICK = ("--resolution", "64", "--patch-size", "0.25", "-q")
 
 SQUARE = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
@@ -51,20 +46,12 @@ def gltf(uvs, nodes=({"mesh": 0, "name": "sheet"},)):
     return json.dumps(document)
 
 
-class Atlases(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
-        (self.folder / "scene.obj").write_bytes(scenes.obj())
-
+class Atlases(scenes.InFolder):
     def solve(self, *arguments, scene="scene.obj"):
-        return subprocess.run([HEMIRAD, "solve", scene, *QUICK, *arguments], cwd=self.folder,
-                              text=True, capture_output=True, timeout=120, check=False)
+        return self.run_hemirad("solve", scene, *QUICK, *arguments)
 
     def solve_gltf(self, *arguments, **content):
-        (self.folder / "sheet.gltf").write_text(gltf(**content), encoding="utf-8")
+        self.write("sheet.gltf", gltf(**content))
         return self.solve(*arguments, scene="sheet.gltf")
 
     def written(self):

@@ -7,7 +7,6 @@ import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
@@ -17,22 +16,7 @@ HEMIRAD = os.environ["HEMIRAD"]
 QUICK = ("--resolution", "64", "--patch-size", "0.25")
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.write("scene.mtl", scenes.MATERIALS)
-        self.write("scene.obj", scenes.obj())
-
-    def write(self, name, content):
-        content = content.encode() if isinstance(content, str) else content
-        (self.folder / name).write_bytes(content)
-
-    def run_hemirad(self, *arguments, environment=None, **options):
-        return subprocess.run([HEMIRAD, *arguments], cwd=self.folder, env=environment, text=True,
-                              capture_output=True, timeout=120, check=False, **options)
-
+class CommandLine(scenes.InFolder):
     def solve(self, *arguments, scene="scene.obj", **options):
         return self.run_hemirad("solve", scene, *QUICK, *arguments, **options)
 
@@ -525,20 +509,20 @@ class Environment(CommandLine):
         return kept | {"TMPDIR": str(self.folder)} | changes
 
     def test_home_that_cannot_be_written(self):
-        self.assert_done(self.solve(environment=self.variables(HOME="/dev/null")))
+        self.assert_done(self.solve(env=self.variables(HOME="/dev/null")))
 
     def test_no_home(self):
-        self.assert_done(self.solve(environment=self.variables()))
+        self.assert_done(self.solve(env=self.variables()))
 
     def test_empty_home_variable(self):
-        self.assert_done(self.solve(environment=self.variables(HOME="")))
+        self.assert_done(self.solve(env=self.variables(HOME="")))
 
     def test_home_in_use(self):
-        self.assert_done(self.solve(environment=self.variables(HOME=str(self.folder))))
+        self.assert_done(self.solve(env=self.variables(HOME=str(self.folder))))
         self.assertTrue((self.folder / ".cache/pocl").is_dir())
 
     def test_locale_with_decimal_commas(self):
-        self.assert_done(self.solve(environment=os.environ | {"LC_ALL": "de_DE.UTF-8"}))
+        self.assert_done(self.solve(env=os.environ | {"LC_ALL": "de_DE.UTF-8"}))
 
 
 class Questions(CommandLine):

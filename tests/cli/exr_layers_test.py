@@ -6,6 +6,7 @@ import json
 import sys
 import unittest
 
+import scenes
 from cli_test import CommandLine
 from exr import Exr
 
@@ -105,6 +106,19 @@ class Layers(CommandLine):
             reflected = 0.0 if emission else 0.5 * arrives
             self.assertAlmostEqual(radiosity, reflected + emission, delta=1e-5 * radiosity)
         self.assertAlmostEqual(max(channels["emission.R"]), 9 * 3.14159265, delta=1e-4)
+
+    def test_shots_are_those_of_each_patch_and_all_of_them_together(self):
+        self.write("scene.mtl", scenes.MATERIALS)
+        self.write("scene.obj", scenes.obj())
+        exr = self.exr("--layers", "shots", "--half", "--texel-size", "0.25", "--backfaces", "cull",
+                       "--report", "r.json")
+        self.assertEqual("f", exr.types["shots.Y"])
+        channels = exr.channels()
+        shots = [s for s, part in zip(channels["shots.Y"], channels["coverage"]) if part == 1]
+        report = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(4 * 8, len(shots))  # of 2 x 2 patches of 2 x 2 texels on either square
+        self.assertEqual(4 * report["shots"], sum(shots))
+        self.assertGreaterEqual(report["shots"], 4)
 
     def test_points_and_normals_are_those_of_the_scene(self):
         exr = self.exr("--layers", "normal,position", "--half")

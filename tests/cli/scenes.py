@@ -1,7 +1,13 @@
-"""Scenes small enough to read, as the bytes of their files."""
+"""Scenes small enough to read, as the bytes of their files, and tests in a folder with one.
+HEMIRAD names the binary."""
 import base64
 import json
+import os
+import pathlib
 import struct
+import subprocess
+import tempfile
+import unittest
 
 LIGHT_AND_FLOOR = """\
 v 0 0 0
@@ -26,6 +32,16 @@ FACES = """\
 o floor
 usemtl white
 f 1 4 3 2
+o ceiling
+usemtl lamp
+f 5 6 7 8
+"""
+
+ROOM = """\
+o room
+usemtl white
+f 1 4 3 2
+f 1 5 8 4
 o ceiling
 usemtl lamp
 f 5 6 7 8
@@ -73,3 +89,22 @@ def glb(document=None):
     text += b" " * (-len(text) % 4)
     return struct.pack("<4sII", b"glTF", 2, 20 + len(text)) + struct.pack(
         "<I4s", len(text), b"JSON") + text
+
+
+class InFolder(unittest.TestCase):
+    """Each test in a folder of its own, with scene.obj and its materials."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write("scene.mtl", MATERIALS)
+        self.write("scene.obj", obj())
+
+    def write(self, name, content):
+        content = content.encode() if isinstance(content, str) else content
+        (self.folder / name).write_bytes(content)
+
+    def run_hemirad(self, *arguments, timeout=120, **options):
+        return subprocess.run([os.environ["HEMIRAD"], *arguments], cwd=self.folder, text=True,
+                              capture_output=True, timeout=timeout, check=False, **options)

@@ -1,30 +1,17 @@
 #!/usr/bin/env python3
 """`hemirad sweep` and the options of the machine model. HEMIRAD names the binary."""
 import csv
-import os
-import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import scenes
 
-HEMIRAD = os.environ["HEMIRAD"]
 SETTINGS = 17  # columns that a row is known by
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
-        (self.folder / "scene.obj").write_bytes(scenes.obj())
-
+class CommandLine(scenes.InFolder):
     def run_hemirad(self, *arguments):
-        return subprocess.run([HEMIRAD, *arguments], cwd=self.folder, text=True,
-                              capture_output=True, timeout=250, check=False)
+        return super().run_hemirad(*arguments, timeout=250)
 
     def sweep(self, *arguments):
         result = self.run_hemirad("sweep", "scene.obj", "--smoke", "--patch-size", "0.5",

@@ -135,12 +135,7 @@ class Tradeoff(unittest.TestCase):
             self.assertEqual({"0", "1"}, {row["pareto"] for row in rows})
 
 
-class OddScenes(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class OddScenes(scenes.InFolder):
     def test_dark_scene_has_factors_only(self):
         write_scene(self.folder, "newmtl white\nKd 1 1 1\nnewmtl lamp\nKd 1 1 1\n")
 

@@ -11,10 +11,6 @@ extreme_solves_test(extreme_solves_test extremes
 extreme_solves_test(extreme_solves_long_test long solves_long_test.cpp)
 extreme_solves_test(extreme_solves_soak_test soak solves_soak_test.cpp)
 
-# One ctest a class, so that they run side by side.
 foreach(group Checker Sizes Emissions Lamps Faces Options)
-    add_test(NAME Extremes.Cli.${group}
-        COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/solves_test.py ${group})
-    set_tests_properties(Extremes.Cli.${group} PROPERTIES LABELS extremes TIMEOUT 300
-        ENVIRONMENT "HEMIRAD=$<TARGET_FILE:hemirad>;POCL_CACHE_DIR=${CMAKE_BINARY_DIR}/pocl-cache;PYTHONDONTWRITEBYTECODE=1")
+    hemirad_cli_test(Extremes.Cli.${group} solves_test.py GROUP ${group} LABEL extremes)
 endforeach()

@@ -8,14 +8,14 @@ import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "cli"))
 import scenes  # noqa: E402
+from exr import Exr  # noqa: E402
+from png import read_png  # noqa: E402
 
-HEMIRAD = os.environ["HEMIRAD"]
 VALIDATOR = pathlib.Path(os.environ["GLTF_VALIDATOR"])
 SCENES = HERE.parents[1] / "scenes"
 QUICK = ("--quality", "draft", "--quiet", "--max-shots", "20")
@@ -40,27 +40,47 @@ def faults_of(*files):
     return [fault for faults in json.loads(result.stdout).values() for fault in faults]
 
 
-def document_of(glb):
-    data = glb.read_bytes()
-    length, = struct.unpack_from("<I", data, 12)
-    return json.loads(data[20:20 + length])
+class Glb:
+    def __init__(self, path):
+        data = path.read_bytes()
+        length, = struct.unpack_from("<I", data, 12)
+        self.json = json.loads(data[20:20 + length])
+        self.binary = data[28 + length:]
+
+    def view(self, index):
+        view = self.json["bufferViews"][index]
+        return self.binary[view["byteOffset"]:view["byteOffset"] + view["byteLength"]]
+
+    def image(self, texture):
+        source = self.json["textures"][texture]["source"]
+        return self.view(self.json["images"][source]["bufferView"])
+
+    def values(self, accessor, form):
+        view = self.json["accessors"][accessor]["bufferView"]
+        return list(struct.iter_unpack(form, self.view(view)))
+
+    def primitives_of(self, *meshes):
+        return [primitive for mesh in self.json["meshes"] if mesh["name"] in meshes
+                for primitive in mesh["primitives"]]
+
+    def material(self, primitive):
+        return self.json["materials"][primitive["material"]]
+
+    def triangles(self, primitive):
+        """Positions and UVs of each one's corners."""
+        positions = self.values(primitive["attributes"]["POSITION"], "<3f")
+        uvs = self.values(primitive["attributes"]["TEXCOORD_1"], "<2f")
+        for corners in self.values(primitive["indices"], "<3I"):
+            yield [positions[i] for i in corners], [uvs[i] for i in corners]
 
 
-class Gltf(unittest.TestCase):
+class Gltf(scenes.InFolder):
     @classmethod
     def setUpClass(cls):
         install_validator()
 
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
-        (self.folder / "scene.obj").write_bytes(scenes.obj())
-
     def solve(self, scene, *arguments):
-        return subprocess.run([HEMIRAD, "solve", str(scene), *QUICK, *arguments], cwd=self.folder,
-                              text=True, capture_output=True, timeout=120, check=False)
+        return self.run_hemirad("solve", str(scene), *QUICK, *arguments)
 
     def test_the_cornell_box_is_valid(self):
         result = self.solve(SCENES / "cornell.gltf", "-o", "box.glb", "--patch-size", "0.15")
@@ -68,7 +88,7 @@ class Gltf(unittest.TestCase):
         self.assertEqual(0, result.returncode, result.stderr)
         self.assertEqual([], faults_of(self.folder / "box.glb"))
         self.assertTrue((self.folder / "box.exr").is_file())
-        box = document_of(self.folder / "box.glb")
+        box = Glb(self.folder / "box.glb").json
         self.assertEqual("box.exr", box["asset"]["extras"]["hemirad"]["exr"])
         self.assertIn("tall_block", [node["name"] for node in box["nodes"]])
         for material in box["materials"]:
@@ -104,6 +124,34 @@ class Gltf(unittest.TestCase):
             result = self.solve("seen.gltf", "-o", "solved.glb")
             self.assertEqual((1, f"seen.gltf: {says}\n"), (result.returncode, result.stderr))
             self.assertFalse((self.folder / "solved.exr").exists())
+
+    def test_a_primitive_leads_into_the_atlas_that_its_triangles_lie_in(self):
+        (self.folder / "scene.obj").write_bytes(scenes.obj(faces=scenes.ROOM))
+        result = self.solve("scene.obj", "-o", "room.glb", "--patch-size", "0.25", "--texel-size",
+                            "0.1", "--padding", "3", "--atlas-size", "16", "--layers", "position")
+
+        self.assertEqual(0, result.returncode, result.stderr)
+        self.assertEqual([], faults_of(self.folder / "room.glb"))
+        room = Glb(self.folder / "room.glb")
+        exrs = [Exr(self.folder / f"room{part}.exr").channels() for part in ("", ".1", ".2")]
+        self.assertEqual(["white", "white"],
+                         [room.material(p)["name"] for p in room.primitives_of("room")])
+        for primitive, atlas in zip(room.primitives_of("room", "ceiling"), (0, 1, 2)):
+            lightmap = room.material(primitive)["extensions"]["MOZ_lightmap"]
+            self.assertEqual(atlas, lightmap["index"])
+            self.assert_lit_alike(room, primitive, lightmap, exrs[atlas])
+
+    def assert_lit_alike(self, glb, primitive, lightmap, exr):
+        """At the middle of each triangle: by the place and the light that the EXR has there."""
+        rows = read_png(glb.image(lightmap["index"]))
+        for places, uvs in glb.triangles(primitive):
+            self.assertTrue(all(0 <= x <= 1 for uv in uvs for x in uv), uvs)
+            x, y = (int(sum(axis) / 3 * 16) for axis in zip(*uvs))
+            for axis, name in zip(zip(*places), "XYZ"):
+                self.assertAlmostEqual(sum(axis) / 3, exr["position." + name][16 * y + x], delta=0.1)
+            for value, name in zip(rows[y][x], "RGB"):
+                self.assertAlmostEqual(value / 255 * lightmap["intensity"], exr[name][16 * y + x],
+                                       delta=lightmap["intensity"] / 500)
 
     def test_the_validator_sees_faults(self):
         self.solve("scene.obj", "-o", "bad.gltf")

@@ -26,8 +26,9 @@ struct Books {
     std::vector<float> escaped;       // [sum, rest][band]
     std::int32_t escaped_count = 0, owned_count = 0;
     std::int32_t row_capacity = 0;
-    std::vector<std::int32_t> row_of;  // [patch]
-    std::vector<float> row_escaped;    // [row]
+    std::vector<std::int32_t> row_of;     // [patch]
+    std::vector<float> row_escaped;       // [row]
+    std::vector<std::uint32_t> shots_of;  // [patch]; empty: not counted
     float tolerance = 1e-3f;
 
     std::size_t stride() const { return summaries.size() * kReduceBlock; }
@@ -87,11 +88,13 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         auto escaped = run.plural(books.escaped), flux = run.plural(books.flux);
         auto row_of = run.plural(books.row_of);
         auto row_escaped = run.plural(books.row_escaped);
+        auto shots_of = run.plural(books.shots_of);
         run.issue({1, GetParam()}, shot, run.plural(books.summaries),
                   run.plural(books.block_unshot), std::int32_t(books.summaries.size()),
                   run.plural(books.unshot), std::int32_t(books.stride()), run.plural(books.weight),
                   books.tolerance, kDiskProxels, proxel_count, std::int32_t(books.stride()),
-                  escaped, flux, books.row_capacity, row_of, row_escaped);
+                  escaped, flux, books.row_capacity, row_of, row_escaped,
+                  std::int32_t(!books.shots_of.empty()), shots_of);
         Books result = books;
         salvo = run.acu().unload(shot);
         result.shot = salvo.front();
@@ -100,6 +103,7 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         result.flux = run.acu().unload(flux);
         result.row_of = run.acu().unload(row_of);
         result.row_escaped = run.acu().unload(row_escaped);
+        result.shots_of = run.acu().unload(shots_of);
         counts_ = run.acu().unload(proxel_count);
         return result;
     }
@@ -426,6 +430,24 @@ TEST_P(ChooseShooter, TheBooksOfAllThatShotAreClosed) {
     EXPECT_EQ(counts_[books.stride()], 0);
     EXPECT_EQ(counts_[spare + books.stride()], 0);
     EXPECT_EQ(counts_[2 * spare + books.stride()], 40);  // a station that nobody had
+}
+
+TEST_P(ChooseShooter, ShotsAreCountedOfThoseThatShootAndNotOfThoseThatLookAhead) {
+    auto books = salvo_books(3);
+    books.flux.assign(6, 0.5f);
+    books.shots_of.assign(books.stride(), 0);
+    books.shots_of[70] = 4;
+    books.others[0].shooter = 70;
+    books.others[1].shooter = 140;
+    books.others[1].is_ahead = 1;
+
+    const auto after = closed(books);
+
+    auto expected = books.shots_of;
+    expected[std::size_t(books.shot.shooter)] = 1;
+    expected[70] = 5;
+    EXPECT_EQ(after.shots_of, expected);
+    EXPECT_EQ(after.shot.shots, books.shot.shots + 2);
 }
 
 TEST_P(ChooseShooter, ASalvoIsOfNoMoreThanAreAllowed) {

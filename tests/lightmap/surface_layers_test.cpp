@@ -1,6 +1,7 @@
 #include "lightmap/surface_layers.h"
 
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "lightmap/support.h"
 
@@ -26,6 +27,25 @@ struct Wall {
         layout = lay_out_charts(mesh, {.texel_size = 0.5});
     }
 };
+
+TEST(ShotsLayer, HoldsThoseOfTheTexelsPatchUnblended) {
+    const Wall wall;
+    std::vector<std::uint32_t> shots_of(wall.mesh.patches.size());
+    for (std::uint32_t i = 0; i < shots_of.size(); ++i) shots_of[i] = 100 * i + 1;
+
+    const Layer layer = shots_layer(wall.mesh, wall.layout, shots_of);
+
+    ASSERT_EQ(layer.values.size(), 1u);
+    std::map<float, int> found;
+    const Chart& chart = wall.layout.charts[0];
+    for (std::uint32_t y = 0; y < 4; ++y)
+        for (std::uint32_t x = 0; x < 6; ++x)
+            ++found[layer.values[0][std::size_t{chart.y + y} * wall.layout.atlases[0].width +
+                                    chart.x + x]];
+    std::map<float, int> expected;
+    for (const std::uint32_t shots : shots_of) expected[float(shots)] = 24 / int(shots_of.size());
+    EXPECT_EQ(found, expected);
+}
 
 TEST(PositionLayer, HoldsTheCentreOfEachTexel) {
     const Wall wall;

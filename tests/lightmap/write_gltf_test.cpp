@@ -58,7 +58,8 @@ class WriteGltf : public InFolder {
   protected:
     Scene round_trip(const Lit& lit, const std::string& name = "a.glb") const {
         write_gltf(file(name), lit.scene, lit.mesh, lit.cameras,
-                   lightmap_uvs(lit.scene, lit.mesh, lit.layout), lit.lightmap, "a.exr");
+                   lightmap_uvs(lit.scene, lit.mesh, lit.layout), {lightmap_image(lit.lightmap)},
+                   "a.exr");
         return read_scene(file(name));
     }
     nlohmann::json json() const { return nlohmann::json::parse(bytes_of(file("a.gltf"))); }

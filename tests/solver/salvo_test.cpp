@@ -74,6 +74,21 @@ TEST_P(Salvo, ConvergesToTheSolutionOfOneAtATime) {
     }
 }
 
+TEST_P(Salvo, WhatEachPatchShotAddsUpToAllShotsAndCountingChangesNoBit) {
+    const Mesh mesh = box();
+    auto counted = how(8);
+    counted.count_shots = true;
+
+    const auto plain = solved(mesh, how(8)).solution;
+    const auto solution = solved(mesh, counted).solution;
+
+    expect_equal(solution, plain);
+    EXPECT_TRUE(plain.shots_of.empty());
+    ASSERT_EQ(solution.shots_of.size(), mesh.patches.size());
+    EXPECT_EQ(std::accumulate(solution.shots_of.begin(), solution.shots_of.end(), std::uint64_t{0}),
+              solution.shots);
+}
+
 TEST_P(Salvo, TakesFewMoreShots) {
     const Mesh mesh = box();
     const auto one = solved(mesh, how(1)).solution.shots;

@@ -39,6 +39,14 @@ TEST(FalseColour, ScalesEndAtRoundNumbers) {
     EXPECT_DOUBLE_EQ(round_above(0), 1);
 }
 
+TEST(FalseColour, SpecksDoNotStretchAScale) {
+    std::vector<double> values(200, 2.1);
+    values[7] = 1e6;
+
+    EXPECT_DOUBLE_EQ(scale_end(values), 2.5);
+    EXPECT_DOUBLE_EQ(scale_end({}), 1);
+}
+
 TEST(FalseColours, TheSumOfTheBandsIsShown) {
     const Picture picture = false_colours_of(row_of(std::vector<float>(200, 1.0f)), 3.0, "W/m^2");
     const Picture half = false_colours_of(row_of(std::vector<float>(200, 0.5f)), 3.0, "W/m^2");

@@ -17,21 +17,25 @@ inline void add_triangle(LitScene& lit, std::initializer_list<glm::dvec3> corner
     lit.scene.faces.push_back(face);
 }
 
-/// One band; a lightmap of one row of texels.
+/// A lightmap of one row of texels.
+inline void add_atlas(LitScene& lit, const std::vector<float>& irradiance) {
+    const auto width = static_cast<std::uint32_t>(irradiance.size());
+    lit.lightmaps.push_back({width, 1, {"Y"}, {irradiance}, std::vector<float>(width, 1.0f)});
+}
+
+/// One band.
 inline LitScene scene_lit_by(const std::vector<float>& irradiance) {
     LitScene lit;
     lit.scene.file = "lit.glb";
     lit.scene.bands = {"Y"};
     lit.scene.objects = {"object"};
-    lit.lightmap = {static_cast<std::uint32_t>(irradiance.size()),
-                    1,
-                    {"Y"},
-                    {irradiance},
-                    std::vector<float>(irradiance.size(), 1.0f)};
+    add_atlas(lit, irradiance);
     return lit;
 }
 
-inline void add_material(LitScene& lit, double reflectance, double emission) {
+inline void add_material(LitScene& lit, double reflectance, double emission,
+                         std::uint32_t atlas = 0) {
+    lit.atlas_of.push_back(atlas);
     lit.scene.materials.push_back({"paint", {reflectance}, {emission}, false});
 }
 

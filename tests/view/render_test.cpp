@@ -34,6 +34,15 @@ TEST(Render, ASurfaceShowsWhatItReflectsAndEmits) {
     EXPECT_EQ(picture.coverage, std::vector<float>(9, 1.0f));
 }
 
+TEST(Render, EachMaterialShowsItsOwnAtlas) {
+    LitScene lit = scene_lit_by({6});
+    add_atlas(lit, {2, 4});
+    add_material(lit, 1, 0, 1);
+    add_wall(lit, -5);  // between the second atlas's texels
+
+    EXPECT_NEAR(at(render(lit, kCamera, small(1)), 0, 0), 3 / kPi, 1e-6);
+}
+
 TEST(Render, OfRadiosityAPiThIsSeen) {
     LitScene lit = scene_lit_by({6});
     lit.quantity = Quantity::radiosity;
@@ -100,7 +109,7 @@ TEST(Render, APixelAtAnEdgeIsTheMeanOfWhatItShows) {
 
 TEST(Render, ALayerShowsItsOwnLightAndNoLamps) {
     LitScene lit = scene_lit_by({6});
-    lit.lightmap.layers["left"].values = {{2}};
+    lit.lightmaps[0].layers["left"].values = {{2}};
     add_material(lit, 0.5, 0.25);
     add_wall(lit, -5);
     RenderSettings settings = small(1);
@@ -112,7 +121,7 @@ TEST(Render, ALayerShowsItsOwnLightAndNoLamps) {
 TEST(Render, ALayerThatIsNotThereIsRefusedWithThoseThatAre) {
     LitScene lit = scene_lit_by({6});
     lit.exr = "lit.exr";
-    lit.lightmap.layers["left"].values = {{2}};
+    lit.lightmaps[0].layers["left"].values = {{2}};
     RenderSettings settings = small(1);
     settings.layer = "right";
 

@@ -5,56 +5,22 @@ import os
 import pathlib
 import re
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
-import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "cli"))
 import scenes  # noqa: E402
+from exr import Exr  # noqa: E402
+from png import read_png  # noqa: E402
 
 HEMIRAD = os.environ["HEMIRAD"]
 CORNELL = HERE.parents[1] / "scenes" / "cornell.gltf"
 
 
-def read_png(path):
-    """8 bits a channel, as rows of (r, g, b)."""
-    data = path.read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    width, height, depth, kind = struct.unpack_from(">IIBB", data, 16)
-    assert (depth, kind) == (8, 2)
-    at, packed = 8, b""
-    while at < len(data):
-        length, = struct.unpack_from(">I", data, at)
-        if data[at + 4:at + 8] == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    return unfiltered(zlib.decompress(packed), width, height)
-
-
-def unfiltered(raw, width, height):
-    rows, above, stride = [], bytes(3 * width), 3 * width + 1
-    for y in range(height):
-        kind, line = raw[y * stride], bytearray(raw[y * stride + 1:(y + 1) * stride])
-        for i in range(len(line)):
-            left, up = (line[i - 3] if i >= 3 else 0), above[i]
-            corner = above[i - 3] if i >= 3 else 0
-            line[i] = (line[i] + (0, left, up, (left + up) // 2,
-                                  paeth(left, up, corner))[kind]) & 255
-        rows.append([tuple(line[i:i + 3]) for i in range(0, len(line), 3)])
-        above = bytes(line)
-    return rows
-
-
-def paeth(left, up, corner):
-    guess = left + up - corner
-    return min((left, up, corner), key=lambda value: abs(guess - value))
-
-
-class Solved(unittest.TestCase):
+class Solved(scenes.InFolder):
     """A folder with a solved Cornell box, made once a class."""
 
     @classmethod
@@ -62,9 +28,16 @@ class Solved(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.solved = pathlib.Path(folder.name)
-        result = cls.call(cls.solved, "solve", str(CORNELL), "-o", "box.glb", "--quality", "draft",
-                          "--patch-size", "0.1", "--max-shots", "60", "--quiet",
-                          "--snapshot-every", "20", "--keep-snapshots")
+        cls.prepare()
+
+    @classmethod
+    def prepare(cls):
+        cls.solve(str(CORNELL), "-o", "box.glb", "--patch-size", "0.1", "--max-shots", "60",
+                  "--snapshot-every", "20", "--keep-snapshots")
+
+    @classmethod
+    def solve(cls, *arguments):
+        result = cls.call(cls.solved, "solve", *arguments, "--quality", "draft", "--quiet")
         assert result.returncode == 0, result.stderr
 
     @staticmethod
@@ -73,14 +46,12 @@ class Solved(unittest.TestCase):
                               timeout=120, check=False)
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         for file in self.solved.iterdir():
             shutil.copy(file, self.folder)
 
     def hemirad(self, *arguments):
-        return self.call(self.folder, *arguments)
+        return self.run_hemirad(*arguments)
 
     def assert_done(self, result):
         self.assertEqual(0, result.returncode, result.stderr)
@@ -91,7 +62,6 @@ class Solved(unittest.TestCase):
         self.assertIn(says, result.stderr)
 
 
-class View(Solved):
     def page(self, *arguments, scene="box.glb"):
         self.assert_done(self.hemirad("view", scene, "-o", "page.html", *arguments))
         return (self.folder / "page.html").read_text(encoding="utf-8")
@@ -99,6 +69,8 @@ class View(Solved):
     def lit_scene(self, page):
         return json.loads(re.search(r'id="lit-scene">(.*?)</script>', page, re.S)[1])
 
+
+class View(Solved):
     def test_a_page_needs_nothing_but_itself(self):
         page = self.page()
 
@@ -163,7 +135,7 @@ class View(Solved):
 class Render(Solved):
     def picture(self, *arguments):
         self.assert_done(self.hemirad("render", "box.glb", "-o", "a.png", *arguments))
-        return read_png(self.folder / "a.png")
+        return read_png((self.folder / "a.png").read_bytes())
 
     def test_the_box_is_seen_by_its_camera(self):
         rows = self.picture("--camera", "front", "--size", "90x90")
@@ -233,11 +205,88 @@ class Render(Solved):
                 self.assertFalse((self.folder / "a.png").exists())
 
     def test_a_scene_without_cameras_says_what_to_do(self):
-        (self.folder / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
-        (self.folder / "scene.obj").write_bytes(scenes.obj())
         self.assert_done(self.hemirad("solve", "scene.obj", "-o", "s.glb", "--quality", "draft",
                                       "--quiet"))
         self.assert_refused(self.hemirad("render", "s.glb"), "--eye X,Y,Z needs none")
+
+
+class Room(Solved):
+    """Solved with a chart an atlas, box.glb, and with all in one, one.glb."""
+    @classmethod
+    def prepare(cls):
+        (cls.solved / "scene.mtl").write_text(scenes.MATERIALS, encoding="utf-8")
+        (cls.solved / "scene.obj").write_bytes(scenes.obj(faces=scenes.ROOM))
+        alike = ("--patch-size", "0.25", "--texel-size", "0.1", "--padding", "3", "--layers",
+                 "emission", "--max-shots", "40")
+        cls.solve("scene.obj", "-o", "box.glb", *alike, "--atlas-size", "16", "--snapshot-every",
+                  "20", "--keep-snapshots")
+        cls.solve("scene.obj", "-o", "one.glb", *alike)
+
+
+class SeveralAtlases(Room):
+    SEEN = ("--size", "40x40", "--eye", "0.9,0.6,0.5", "--look-at", "0,0.4,0.5", "--fov", "90")
+
+    def rendered(self, scene):
+        self.assert_done(self.hemirad("render", scene, "-o", "a.exr", *self.SEEN))
+        return Exr(self.folder / "a.exr").channels()
+
+    def test_a_picture_is_that_of_one_atlas(self):
+        self.assertTrue((self.folder / "box.2.exr").is_file())
+        self.assertFalse((self.folder / "one.1.exr").is_file())
+
+        several, one = self.rendered("box.glb"), self.rendered("one.glb")
+        for name, values in one.items():
+            for a, b in zip(several[name], values):
+                self.assertAlmostEqual(a, b, delta=1e-4)
+        self.assertGreater(max(one["R"]), 0.5)
+
+    def test_false_colours_also_of_a_layer_are_those_of_one_atlas(self):
+        for choice in ((), ("--layer", "emission")):
+            pictures = []
+            for scene in ("box.glb", "one.glb"):
+                self.assert_done(self.hemirad("render", scene, "-o", "a.png", *self.SEEN,
+                                              "--false-colour", *choice))
+                pictures.append(read_png((self.folder / "a.png").read_bytes()))
+            self.assertGreater(len({pixel for row in pictures[1][:40] for pixel in row}), 2)
+            far = max(abs(a - b) for x, y in zip(*pictures) for p, q in zip(x, y)
+                      for a, b in zip(p, q))
+            self.assertLessEqual(far, 1)
+
+    def test_a_page_holds_all_of_them_in_every_layer_and_snapshot(self):
+        lit = self.lit_scene(self.page())
+
+        self.assertEqual([{"width": 16, "height": 16}] * 3, lit["atlases"])
+        self.assertEqual([0, 1, 2], [material["atlas"] for material in lit["materials"]])
+        self.assertEqual(["all", "emission"], [layer["name"] for layer in lit["layers"]])
+        self.assertEqual([20, 40], [snapshot["shots"] for snapshot in lit["snapshots"]])
+        for picture in lit["layers"] + lit["snapshots"]:
+            self.assertEqual(3, len(picture["texels"]))
+        self.assertEqual(3, len(set(lit["layers"][0]["texels"])))
+        one = self.lit_scene(self.page(scene="one.glb"))
+        for name in ("exposure", "largest"):
+            self.assertAlmostEqual(one[name], lit[name])
+
+    def test_a_snapshot_that_lacks_an_atlas_is_left_out(self):
+        (self.folder / "box.1-20.exr").unlink()
+
+        lit = self.lit_scene(self.page())
+
+        self.assertEqual([40], [snapshot["shots"] for snapshot in lit["snapshots"]])
+
+    def test_an_atlas_that_is_missing_or_of_another_solve_is_named(self):
+        (self.folder / "box.1.exr").unlink()
+        self.assert_refused(self.hemirad("view", "box.glb"), "box.1.exr: no such file")
+        shutil.copy(self.folder / "one.exr", self.folder / "box.1.exr")
+        self.assert_refused(self.hemirad("view", "box.glb"),
+                            "box.1.exr: is not of the solve that box.exr is of")
+
+    def test_a_material_of_no_atlas_is_refused(self):
+        glb = (self.folder / "box.glb").read_bytes()
+        (self.folder / "box.glb").write_bytes(glb.replace(b'"index":2', b'"index":3'))
+        self.assert_refused(self.hemirad("view", "box.glb"),
+                            "materials/2: its MOZ_lightmap is none of the atlases")
+        (self.folder / "box.glb").write_bytes(glb.replace(b'"atlases":3', b'"atlases":4'))
+        self.assert_refused(self.hemirad("view", "box.glb"), "no number of its textures")
 
 
 if __name__ == "__main__":
