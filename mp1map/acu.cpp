@@ -38,10 +38,13 @@ void Acu::fail(const std::string& name, const cl::Error& error) const {
 
 cl::Buffer Acu::allocated(std::size_t bytes) {
     cl::Buffer buffer;
-    // What a CPU has no memory for is refused by the first call that touches it.
+    const bool huge = is_cpu_ && bytes >= kLeastHuge;
+    // PoCL 3.1 allocates the host's memory at once, and else when it is first used, where it aborts
+    // if there is none.
+    const cl_mem_flags where = huge ? CL_MEM_ALLOC_HOST_PTR : cl_mem_flags{};
     guarded("allocation of " + std::to_string(bytes) + " bytes", [&] {
-        buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
-        if (is_cpu_ && bytes >= kLeastHuge) ask_for_huge_pages(buffer, bytes);
+        buffer = cl::Buffer(context_, CL_MEM_READ_WRITE | where, bytes);
+        if (huge) ask_for_huge_pages(buffer, bytes);
     });
     return buffer;
 }
