@@ -1,6 +1,5 @@
 // First level of the sums over all patches that close a shot's analytic form factors: of the
-// factors, and of the doubt about them. block_sums:
-// [station][block][visible, doubtful].
+// factors, and of the doubt about them. block_sums: [station][block][visible, doubtful].
 #include "progress.clh"
 #include "shared.h"
 #include "sixteen_sums.clh"

@@ -1,7 +1,7 @@
-// Turns counts, [station][PE][tile], into the places where each PE's part of a tile's list begins, in
-// place, and says where each tile's list ends, [station][tile]: a station's lists lie one behind
-// another, tile by tile and PE by PE, from station * capacity on. By one array a station. More entries than `capacity` halt the shot; the host then enlarges the buffer and
-// repeats it.
+// Turns counts, [station][PE][tile], into the places where each PE's part of a tile's list begins,
+// in place, and says where each tile's list ends, [station][tile]: a station's lists lie one behind
+// another, tile by tile and PE by PE, from station * capacity on. By one array a station. More
+// entries than `capacity` halt the shot; the host then enlarges the buffer and repeats it.
 #include "progress.clh"
 #include "tiles.clh"
 

@@ -34,8 +34,8 @@ static void broadcast(const __global Projection* projections,
 // rectangle it never is: beyond a sharp corner the arcs' margins reach farther than the
 // rectangle's, and which proxels are evaluated there depends on the array.
 static void project(const __local Projection* patch, const __local Rectangle* of, int tile,
-                    int area_column, int pe, const __global real_v* roots, __local real_v* depth, __local int_v* owner,
-                    Activity* activity, Coverage* coverage) {
+                    int area_column, int pe, const __global real_v* roots, __local real_v* depth,
+                    __local int_v* owner, Activity* activity, Coverage* coverage) {
     const int column = proxel_column(tile, area_column, pe);
     if (column > last_of(of->columns) || column + LANES <= first_of(of->columns)) return;
     const int_v columns = column + LANE_INDEX;

@@ -12,8 +12,7 @@ __kernel void receive_flux(const __global Shot* salvo, const __global float* sho
                            __global float* block_unshot) {
     if (!is_shooting(salvo)) return;
     const int size = salvo_size(salvo), shooters = shooter_count(salvo);
-    int owned[SALVO];
-    for (int station = 0; station < SALVO; ++station) owned[station] = 0;
+    int owned[SALVO] = {0};
     for (int block = get_global_id(0); block < stride / kReduceBlock;
          block += get_global_size(0)) {
         Reduction reduction;

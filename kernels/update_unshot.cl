@@ -1,7 +1,7 @@
 // Sec. 1.5.4: what the shots' flux leaves to be shot. A shooter has none left but what it and those
-// that shoot at once sent to it. Each PE then reduces the unshot flux of its blocks, the first level of the choice of the
-// most energetic shooter. With TWO_LEVELS (Cohen et al.) a shooter is a group of patches, their
-// elements, and reflects what all of these received.
+// that shoot at once sent to it. Each PE then reduces the unshot flux of its blocks, the first level
+// of the choice of the most energetic shooter. With TWO_LEVELS (Cohen et al.) a shooter is a group of
+// patches, their elements, and reflects what all of these received.
 // rows: [row][patch]. unshot, reflectance: [band][shooter]; flux in normalised units.
 // first_patch: [shooter], and one more. block_unshot: [block][band].
 #include "salvo.clh"

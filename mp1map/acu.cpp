@@ -27,9 +27,10 @@ Acu::Acu(const Device& device, bool timed)
 }
 
 void Acu::fail(const std::string& name, const cl::Error& error) const {
-    const bool memory =
-        error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_RESOURCES ||
-        error.err() == CL_OUT_OF_HOST_MEMORY || error.err() == CL_INVALID_BUFFER_SIZE;
+    const bool memory = error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
+                        error.err() == CL_OUT_OF_RESOURCES ||
+                        error.err() == CL_OUT_OF_HOST_MEMORY ||
+                        error.err() == CL_INVALID_BUFFER_SIZE || error.err() == CL_MAP_FAILURE;
     throw DeviceError(device_name_ + ": " + name + ": " + error.what() +
                       " failed with OpenCL error " + std::to_string(error.err()) +
                       (memory ? " (out of memory)" : ""));
@@ -37,9 +38,14 @@ void Acu::fail(const std::string& name, const cl::Error& error) const {
 
 cl::Buffer Acu::allocated(std::size_t bytes) {
     cl::Buffer buffer;
-    guarded("allocation of " + std::to_string(bytes) + " bytes",
-            [&] { buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes); });
-    if (is_cpu_ && bytes >= kLeastHuge) ask_for_huge_pages(buffer, bytes);
+    const bool huge = is_cpu_ && bytes >= kLeastHuge;
+    // PoCL 3.1 allocates the host's memory at once, and else when it is first used, where it aborts
+    // if there is none.
+    const cl_mem_flags where = huge ? CL_MEM_ALLOC_HOST_PTR : cl_mem_flags{};
+    guarded("allocation of " + std::to_string(bytes) + " bytes", [&] {
+        buffer = cl::Buffer(context_, CL_MEM_READ_WRITE | where, bytes);
+        if (huge) ask_for_huge_pages(buffer, bytes);
+    });
     return buffer;
 }
 
@@ -48,15 +54,13 @@ cl::Buffer Acu::allocated(std::size_t bytes) {
 void Acu::ask_for_huge_pages([[maybe_unused]] const cl::Buffer& buffer,
                              [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
-    guarded("mapping", [&] {
-        void* const memory =
-            queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
-        const auto begin = reinterpret_cast<std::uintptr_t>(memory);
-        const auto first = (begin + kHugePage - 1) / kHugePage * kHugePage;
-        const auto end = (begin + bytes) / kHugePage * kHugePage;
-        madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);  // only advice
-        queue_.enqueueUnmapMemObject(buffer, memory);
-    });
+    void* const memory =
+        queue_.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
+    const auto begin = reinterpret_cast<std::uintptr_t>(memory);
+    const auto first = (begin + kHugePage - 1) / kHugePage * kHugePage;
+    const auto end = (begin + bytes) / kHugePage * kHugePage;
+    madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);  // only advice
+    queue_.enqueueUnmapMemObject(buffer, memory);
 #endif
 }
 

@@ -200,8 +200,6 @@ void add_authored(const Mesh& mesh, const AuthoredTriangle& triangle, const Rect
     }
 }
 
-}  // namespace
-
 Footprints chart_footprints(const Mesh& mesh, const ChartLayout& layout, const Chart& chart,
                             const std::vector<bool>& hidden) {
     const Surface& surface = mesh.surfaces[chart.surface];
@@ -231,6 +229,18 @@ Footprints authored_footprints(const Mesh& mesh, const ChartLayout& layout, std:
     for (const AuthoredTriangle& triangle : layout.authored)
         if (triangle.atlas == atlas) add_authored(mesh, triangle, whole, builder);
     return builder.take(layout.padding);
+}
+
+}  // namespace
+
+void for_each_footprints(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
+                         const std::vector<bool>& hidden,
+                         const std::function<void(const Footprints&)>& visit) {
+    if (std::ranges::find(layout.authored, atlas, &AuthoredTriangle::atlas) !=
+        layout.authored.end())
+        visit(authored_footprints(mesh, layout, atlas, hidden));
+    for (const Chart& chart : layout.charts)
+        if (chart.atlas == atlas) visit(chart_footprints(mesh, layout, chart, hidden));
 }
 
 }  // namespace hemirad

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <vector>
 
@@ -41,13 +42,11 @@ struct Footprints {
     }
 };
 
-/// Of a chart and its gutter. Texels of the gutter, and those that show hidden patches, show what
-/// the nearest other shows: these wherever one is, those up to the padding away.
-Footprints chart_footprints(const Mesh& mesh, const ChartLayout& layout, const Chart& chart,
-                            const std::vector<bool>& hidden);
-
-/// Of all triangles that the scene's UVs put into the atlas, likewise.
-Footprints authored_footprints(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
-                               const std::vector<bool>& hidden);
+/// Of an atlas, part by part: all triangles that the scene's UVs put into it, then each chart with
+/// its gutter. Texels of the gutter, and those that show hidden patches, show what the nearest
+/// other shows: these wherever one is, those up to the padding away.
+void for_each_footprints(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
+                         const std::vector<bool>& hidden,
+                         const std::function<void(const Footprints&)>& visit);
 
 }  // namespace hemirad

@@ -1,6 +1,5 @@
 #include "lightmap/rasterize.h"
 
-#include <algorithm>
 #include <map>
 #include <span>
 
@@ -109,12 +108,8 @@ Lightmap rasterize(const Mesh& mesh, const Solution& solution, const ChartLayout
         mesh, irradiance ? solution.irradiance : solution.radiosity,
         irradiance ? LightBlend::Across::all_materials : LightBlend::Across::one_material,
         lightmap);
-    if (std::ranges::find(layout.authored, atlas, &AuthoredTriangle::atlas) !=
-        layout.authored.end())
-        rasterizer.write(authored_footprints(mesh, layout, atlas, rasterizer.hidden()));
-    for (const Chart& chart : layout.charts)
-        if (chart.atlas == atlas)
-            rasterizer.write(chart_footprints(mesh, layout, chart, rasterizer.hidden()));
+    for_each_footprints(mesh, layout, atlas, rasterizer.hidden(),
+                        [&](const Footprints& footprints) { rasterizer.write(footprints); });
     return lightmap;
 }
 

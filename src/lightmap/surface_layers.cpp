@@ -1,7 +1,5 @@
 #include "lightmap/surface_layers.h"
 
-#include <algorithm>
-
 #include "lightmap/find_hidden.h"
 #include "lightmap/footprint.h"
 
@@ -40,15 +38,9 @@ void write(const Footprints& footprints, const Atlas& atlas, const ValueOf& valu
 template <class ValueOf>
 void write_all(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
                const ValueOf& value_of, Layer& layer) {
-    const auto hidden = find_hidden(mesh);
-    if (std::ranges::find(layout.authored, atlas, &AuthoredTriangle::atlas) !=
-        layout.authored.end())
-        write(authored_footprints(mesh, layout, atlas, hidden), layout.atlases[atlas], value_of,
-              layer);
-    for (const Chart& chart : layout.charts)
-        if (chart.atlas == atlas)
-            write(chart_footprints(mesh, layout, chart, hidden), layout.atlases[atlas], value_of,
-                  layer);
+    for_each_footprints(mesh, layout, atlas, find_hidden(mesh), [&](const Footprints& footprints) {
+        write(footprints, layout.atlases[atlas], value_of, layer);
+    });
 }
 
 }  // namespace

@@ -50,6 +50,12 @@ double looks_at(const Contact& contact, const Surface& surface) {
     return 1 + std::min(cells.x, 1.0 * surface.columns) + std::min(cells.y, 1.0 * surface.rows);
 }
 
+Slab slab_of(const Surface& surface, double precision) {
+    return {{surface.origin, surface.u_axis, surface.v_axis, surface.normal},
+            surface.cell_size * glm::dvec2(surface.columns, surface.rows),
+            precision};
+}
+
 }  // namespace
 
 ContactFinder::ContactFinder(const FlatFaces& faces, std::span<const Edge> edges,
@@ -65,15 +71,13 @@ ContactFinder::ContactFinder(const FlatFaces& faces, std::span<const Edge> edges
       wall_looks_left_(looks_left_) {}
 
 std::vector<Contact> ContactFinder::on(std::uint32_t group, const Surface& surface, Sides sides) {
-    const Frame frame{surface.origin, surface.u_axis, surface.v_axis, surface.normal};
-    const Slab slab{frame, surface.cell_size * glm::dvec2(surface.columns, surface.rows),
-                    precision_};
+    const Slab slab = slab_of(surface, precision_);
     std::vector<Contact> contacts;
     for (const std::uint32_t found : tree_.in(slab)) {
         const Shared& edge = outlines_[found];
         if (!ends_on(edge, group, surface, sides)) continue;
-        contacts.push_back(
-            {frame.project(vertices_[edge[0].low()]), frame.project(vertices_[edge[0].high()])});
+        contacts.push_back({slab.frame.project(vertices_[edge[0].low()]),
+                            slab.frame.project(vertices_[edge[0].high()])});
         looks_left_ -= looks_at(contacts.back(), surface);
         if (!complete()) return {};
     }
@@ -83,9 +87,7 @@ std::vector<Contact> ContactFinder::on(std::uint32_t group, const Surface& surfa
 std::vector<Wall> ContactFinder::walls_on(std::uint32_t group, const Surface& surface,
                                           Sides sides) {
     if (wall_looks_left_ <= 0) return {};
-    const Frame frame{surface.origin, surface.u_axis, surface.v_axis, surface.normal};
-    const Slab slab{frame, surface.cell_size * glm::dvec2(surface.columns, surface.rows),
-                    precision_};
+    const Slab slab = slab_of(surface, precision_);
     std::vector<Wall> walls;
     for (const std::uint32_t found : tree_.in(slab)) {
         const Shared& edge = outlines_[found];
@@ -93,8 +95,8 @@ std::vector<Wall> ContactFinder::walls_on(std::uint32_t group, const Surface& su
         if (std::ranges::any_of(edge, [&](const Edge& side) {
                 return group_of_flat_[side.owner] != group && stands_up(side.owner, surface, sides);
             }))
-            walls.push_back({frame.project(vertices_[edge[0].low()]),
-                             frame.project(vertices_[edge[0].high()])});
+            walls.push_back({slab.frame.project(vertices_[edge[0].low()]),
+                             slab.frame.project(vertices_[edge[0].high()])});
     }
     return walls;
 }

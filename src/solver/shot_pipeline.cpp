@@ -12,9 +12,7 @@
 namespace hemirad {
 namespace {
 
-// PEs of the two kernels that one array runs alone. Fixed: kReducePes decides the order in which
-// choose_shooter adds the blocks' unshot fluxes.
-constexpr std::uint32_t kPrefixPes = 64, kReducePes = 64;
+constexpr std::uint32_t kPrefixPes = 64;  // of prefix_sum, an array a station
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
 constexpr std::uint32_t kMostListEntries = std::numeric_limits<std::int32_t>::max();

@@ -56,6 +56,10 @@ struct PipelineSettings {
     bool keep_owners = false;     ///< for tests: owners() after each projection
 };
 
+/// PEs of the array that runs choose_shooter alone, and of those that close a station's form
+/// factors. Fixed: it decides the order in which fluxes are added.
+inline constexpr std::uint32_t kReducePes = 64;
+
 /// Flux and reflectance of the solved bands, [band * shooter_stride + shooter]; the fluxes of a
 /// band add up to 1, or to 0 where it is dark.
 struct PatchLight {

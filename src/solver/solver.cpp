@@ -117,9 +117,9 @@ ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSe
                         pipeline_settings(mesh, settings, device.summary()), device, shooters);
 }
 
-// choose_shooter adds up every band for each of its 64 PEs in local memory, beside 8 bytes for each
+// choose_shooter adds up every band for each of its PEs in local memory, beside 8 bytes for each
 // of a salvo and of those that may look ahead.
-constexpr std::uint64_t kReducePes = 64, kReduceBytesPerBand = 4, kReduceBytes = 16 * kMostSalvo;
+constexpr std::uint64_t kReduceBytesPerBand = 4, kReduceBytes = 16 * kMostSalvo;
 // update_unshot: 16 sums of a band, which PoCL keeps for all PEs of an array on one thread's stack.
 // 26 MB of them were seen to run, 65 MB to crash.
 constexpr std::uint64_t kSumBytesPerBand = 64, kMostSumBytes = 1 << 24;

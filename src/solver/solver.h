@@ -88,7 +88,8 @@ void shoot(ShotPipeline& pipeline);
 
 enum class Stop { converged, max_shots, time_limit, interrupted };
 
-/// Proxels that a shot's patches own and that escape, over those in the disk; both 1.
+/// Proxels that patches own and that escape, over those in the disk, of the hemispheres of a shot,
+/// those made ahead of their shots included; both 1.
 struct Closure {
     double least = 1, most = 1;
 };

@@ -185,6 +185,21 @@ TEST(AuthoredCharts, AnObjectThatOverlapsItselfIsRefusedByName) {
               "hand.obj: \"floor\": its triangles overlap in TEXCOORD_1, as at");
 }
 
+// As Smart UV Project of Blender lays out its own monkey.
+TEST(AuthoredCharts, AnObjectThatHardlyOverlapsItselfIsUsedWithAWarning) {
+    Scene scene = square(kWhole);
+    add_square(scene, 5, in_part({0.25, 0.5}, {0.3125, 0.5625}));
+
+    const Laid laid = laid_out(scene);
+
+    EXPECT_EQ(laid.layout.atlases.size(), 1u);
+    ASSERT_EQ(laid.layout.warnings.size(), 1u);
+    EXPECT_EQ(laid.layout.warnings[0],
+              "hand.obj: \"floor\": 0.39 % of its triangles' area overlaps in TEXCOORD_1, as at "
+              "(0.2812, 0.5312): a texel there shows one place of two");
+    EXPECT_EQ(lit_by_x(laid).coverage[8 * 16 + 4], 1.0f);
+}
+
 TEST(AuthoredCharts, AnObjectThatOverlapsAnotherGoesToTheNextAtlasWithAWarning) {
     Scene scene = square(kWhole);
     add_square(scene, 5, kWhole, 1);

@@ -1,7 +1,10 @@
 #include "mp1map/acu.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <numeric>
 
 namespace mp1map {
@@ -131,6 +134,36 @@ TEST_F(AcuTest, MoreMemoryThanTheDeviceGivesSaysSo) {
             << error.what();
     }
 }
+
+// A sanitizer's own shadow memory is beyond any such limit.
+#ifndef __SANITIZE_ADDRESS__
+std::uint64_t address_space() {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(AcuTest, MemoryThatACpuLacksWhenItIsTouchedIsAFailedAllocation) {
+    if (!device_.summary().is_cpu) GTEST_SKIP() << "the memory is not the host's";
+    constexpr std::size_t kBytes = std::size_t{1} << 30;
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+    const rlimit tight{address_space() + kBytes / 2, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &tight), 0);
+
+    std::string message;
+    try {
+        acu_.plural<float>(kBytes / sizeof(float));
+    } catch (const DeviceError& error) {
+        message = error.what();
+    }
+    setrlimit(RLIMIT_AS, &before);
+
+    EXPECT_NE(message.find("allocation of " + std::to_string(kBytes) + " bytes"), message.npos)
+        << message;
+    EXPECT_NE(message.find("out of memory"), message.npos) << message;
+}
+#endif
 
 }  // namespace
 }  // namespace mp1map
