@@ -1,3 +1,4 @@
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -25,6 +26,15 @@ int complain_with_log(std::string_view fault) {
     return hemirad::kDeviceFailed;
 }
 
+/// A limit of files' sizes is to be an error of the write, as a full disk is. Blocked, not ignored:
+/// a device's compiler (LLVM) handles the signal, and takes all handlers away, ours of SIGINT too.
+void let_large_files_fail() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGXFSZ);
+    sigprocmask(SIG_BLOCK, &signals, nullptr);
+}
+
 int run(int argc, const char* const* argv) {
     hemirad::CommandLine command_line;
     try {
@@ -38,6 +48,7 @@ int run(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
     using namespace std::string_literals;
+    let_large_files_fail();
     try {
         return run(argc, argv);
     } catch (const CLI::ParseError& fault) {

@@ -9,6 +9,8 @@
 namespace hemirad {
 namespace {
 
+constexpr std::array kSignals{SIGINT, SIGTERM};
+
 // A signal handler reaches nothing but globals.
 volatile std::sig_atomic_t g_requested = 0;
 bool g_in_use = false;
@@ -24,16 +26,19 @@ Interrupts::Interrupts() {
     assert(!g_in_use);
     g_in_use = true;
     g_requested = 0;
-    sigaction(SIGINT, nullptr, &previous_);
-    if (previous_.sa_handler == SIG_IGN) return;  // nohup, a shell's background job
     struct sigaction action = {};
     action.sa_handler = note_interrupt;
     action.sa_flags = SA_RESTART;
-    sigaction(SIGINT, &action, nullptr);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+        sigaction(kSignals[i], nullptr, &previous_[i]);
+        if (previous_[i].sa_handler == SIG_IGN) continue;  // nohup, a shell's background job
+        sigaction(kSignals[i], &action, nullptr);
+    }
 }
 
 Interrupts::~Interrupts() {
-    sigaction(SIGINT, &previous_, nullptr);
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+        sigaction(kSignals[i], &previous_[i], nullptr);
     g_in_use = false;
 }
 

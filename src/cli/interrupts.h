@@ -1,11 +1,12 @@
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace hemirad {
 
-/// While one lives, the first SIGINT is only noted, so that work can end in good order; the second
-/// leaves the program at once. One at a time.
+/// While one lives, the first SIGINT or SIGTERM is only noted, so that work can end in good order;
+/// the second leaves the program at once. One at a time.
 class Interrupts {
   public:
     Interrupts();
@@ -16,7 +17,7 @@ class Interrupts {
     bool requested() const;
 
   private:
-    struct sigaction previous_;
+    std::array<struct sigaction, 2> previous_;
 };
 
 }  // namespace hemirad

@@ -37,6 +37,8 @@ struct Outcome {
     std::optional<Error> error;
     Closure closure;
     std::uint64_t repeated_shots = 0;
+    std::uint64_t resumed_shots = 0;  ///< of all, those before --resume
+    std::optional<std::string> checkpoint_fault;
     Seconds seconds;
     mp1map::DeviceSummary device;
     mp1map::PeArray pe_array;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/checkpoint_file.h"
 #include "cli/layered_lightmap.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -29,6 +30,7 @@ fs::path place_of(const fs::path& file) { return fs::weakly_canonical(fs::absolu
 std::vector<fs::path> all_files(const SolveOptions& options) {
     std::vector<fs::path> files = output_files(options);
     if (options.report) files.push_back(*options.report);
+    if (options.checkpoint) files.push_back(*options.checkpoint);
     return files;
 }
 
@@ -116,6 +118,7 @@ void check_outputs(const SolveOptions& options) {
     if (options.report) check_ending("--report", *options.report, {".json"});
     const auto files = all_files(options);
     check_distinct(options.scene, files);
+    if (options.checkpoint) require_no_other_file(*options.checkpoint);
     for (const auto& file : files) check_writable(file);
 }
 

@@ -124,6 +124,7 @@ void write_report(const std::filesystem::path& path, const SolveOptions& options
         {"device", device_json(outcome)},
         {"settings", settings_json(options)},
         {"shots", outcome.solution.shots},
+        {"resumed_shots", outcome.resumed_shots},
         {"repeated_shots", outcome.repeated_shots},
         {"unshot_fraction", outcome.solution.unshot_fraction},
         {"ledger", ledger_json(outcome.solution.bands, outcome.solution.ledger)},

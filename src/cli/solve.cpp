@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <utility>
 
+#include "cli/checkpoint_file.h"
+#include "cli/checkpoints.h"
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
 #include "cli/layered_lightmap.h"
@@ -15,6 +18,7 @@
 #include "cli/report.h"
 #include "cli/shot_clock.h"
 #include "cli/snapshots.h"
+#include "cli/solve_identity.h"
 #include "cli/solve_options.h"
 #include "cli/stopwatch.h"
 #include "cli/summary.h"
@@ -22,6 +26,7 @@
 #include "errors.h"
 #include "lightmap/find_splits.h"
 #include "lightmap/write_faces.h"
+#include "scene/printable.h"
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
@@ -33,7 +38,8 @@ namespace {
 /// Everything known before the first shot. The mesh is the scene's; both are needed to the end.
 struct Work {
     Scene scene;
-    std::vector<Camera> cameras;  ///< for those who look at the solved scene
+    std::vector<Camera> cameras;           ///< for those who look at the solved scene
+    std::optional<Checkpoint> checkpoint;  ///< of --resume
     Mesh mesh;
     ChartLayout layout;
 };
@@ -51,6 +57,7 @@ Work prepare(SolveOptions& options) {
     choose_outputs(options);
     check_outputs(options);
     Work work;
+    if (options.resume) work.checkpoint = read_checkpoint(*options.resume);
     work.scene = read_scene(options.scene);
     if (options.gltf) work.cameras = read_cameras(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(work.scene);
@@ -102,13 +109,41 @@ void require_memory(const Work& work, const SolveOptions& options,
                      "; raise --patch-size or lower --resolution");
 }
 
+/// Where the options ask for none, nothing.
+SolveIdentity checked_identity(const Work& work, const SolveOptions& options,
+                               const mp1map::DeviceSummary& device) {
+    if (!options.checkpoint && !options.resume) return {};
+    auto solve = identity_of(options, work.scene, work.mesh, device);
+    if (!options.resume) return solve;
+    require_same_solve(*options.resume, *work.checkpoint, solve, options.solver.tolerance,
+                       options.solver.max_shots);
+    if (const auto warning = doubt(*options.resume, *work.checkpoint, solve))
+        print_warnings(std::cerr, {*warning});
+    return solve;
+}
+
+/// Returns how many shots there were before.
+std::uint64_t resume(ProgressiveSolver& solver, const Work& work, const SolveOptions& options) {
+    if (!options.resume) return 0;
+    solver.resume(work.checkpoint->state);
+    const auto shots = work.checkpoint->state.shots;
+    if (!options.quiet)
+        std::cerr << printable(options.resume->string()) << ": goes on after "
+                  << counted(shots, "shot") << '\n';
+    return shots;
+}
+
 Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& options,
-           const Interrupts& interrupts, ShotClock& shot_clock) {
+           const Interrupts& interrupts, Checkpoints& checkpoints, ShotClock& shot_clock) {
     Snapshots snapshots(options.snapshots);
     ProgressDisplay display(progress_style(options.quiet, options.no_progress),
                             options.solver.tolerance);
     return solver.solve([&](const Progress& progress) {
         shot_clock.note(progress);
+        if (const auto warning = checkpoints.note(progress, solver)) {
+            display.clear();
+            print_warnings(std::cerr, {*warning});
+        }
         display.show(progress.shots, progress.unshot_fraction);
         if (snapshots.due(progress))
             write_interim_picture(options, work.scene, work.cameras, work.mesh, work.layout,
@@ -119,14 +154,17 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
 
 Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::Device& device,
                    const Interrupts& interrupts) {
+    Checkpoints checkpoints(options, checked_identity(work, options, device.summary()));
     ProgressiveSolver solver(work.mesh, options.solver, device);
     if (!options.quiet)
         print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
-    const Stopwatch solving;
-    ShotClock shot_clock;
     Outcome outcome;
-    outcome.stop = shoot(solver, work, options, interrupts, shot_clock);
+    outcome.resumed_shots = resume(solver, work, options);
+    const Stopwatch solving;
+    ShotClock shot_clock(outcome.resumed_shots);
+    outcome.stop = shoot(solver, work, options, interrupts, checkpoints, shot_clock);
     outcome.seconds.solve = solving.seconds();
+    outcome.checkpoint_fault = checkpoints.write(solver);
     outcome.solution = solver.solution();
     outcome.closure = solver.closure();
     outcome.repeated_shots = solver.repeated_shots();
@@ -166,8 +204,9 @@ Outcome solve_with(const Solving& solving, SolveOptions options, const SolverSet
     return solve_once(solving.work, options, solving.device, solving.interrupts);
 }
 
-SolveOptions without_snapshots(SolveOptions options) {
+SolveOptions without_interim_files(SolveOptions options) {
     options.snapshots = {};
+    options.checkpoint = options.resume = {};
     options.solver.stop_every = 0;
     return options;
 }
@@ -176,7 +215,7 @@ SolveOptions without_snapshots(SolveOptions options) {
 Outcome solve_and_estimate(const Solving& solving, const SolveOptions& options) {
     auto outcome = solve_with(solving, options, options.solver);
     if (!options.estimate_error || outcome.stop != Stop::converged) return outcome;
-    const auto plain = without_snapshots(options);
+    const auto plain = without_interim_files(options);
     const auto other = solve_with(solving, plain, for_comparison(plain.solver));
     if (other.stop == Stop::converged) note_error(solving.work, other, outcome);
     return outcome;
@@ -185,7 +224,7 @@ Outcome solve_and_estimate(const Solving& solving, const SolveOptions& options) 
 /// Steps of the dial until one differs from the step before by no more than the target. The last
 /// that came to its end is kept.
 Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
-    const auto plain = without_snapshots(options);
+    const auto plain = without_interim_files(options);
     double tolerance = plain.solver.tolerance;
     const auto solve_at = [&](unsigned step) {
         SolverSettings solver = plain.solver;
@@ -216,11 +255,12 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
     return coarser;
 }
 
-/// Solutions of the dial's coarsest step tell where elements and patches are to be split.
-void split_where_light_varies(Work& work, const SolveOptions& options, const mp1map::Device& device,
+/// Solutions of the dial's coarsest step tell where elements and patches are to be split. False
+/// where one did not come to its end.
+bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1map::Device& device,
                               const Interrupts& interrupts) {
     constexpr double kBound = 0.02, kShooterBound = 0.01, kTolerance = 1e-2;
-    SolveOptions pilot = without_snapshots(options);
+    SolveOptions pilot = without_interim_files(options);
     pilot.quiet = true;
     pilot.solver.parts = {};
     pilot.solver.count_shots = false;
@@ -231,17 +271,18 @@ void split_where_light_varies(Work& work, const SolveOptions& options, const mp1
     set_accuracy(pilot.solver, accuracy_at(0));
     for (std::uint32_t level = 0; level < options.mesh.split_levels; ++level) {
         const auto outcome = solve_once(work, pilot, device, interrupts);
-        if (outcome.stop != Stop::converged) return;
+        if (outcome.stop != Stop::converged) return false;
         const Splits splits{
             find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound),
             find_shooter_splits(work.mesh, outcome.solution, kShooterBound)};
         Mesh finer = split_mesh(work.scene, options.mesh, work.mesh, splits);
         if (finer.patches.size() == work.mesh.patches.size() &&
             finer.shooter_count() == work.mesh.shooter_count())
-            return;
+            return true;
         work.mesh = std::move(finer);
         require_memory(work, options, device.summary());
     }
+    return true;
 }
 
 void write_results(const Work& work, const SolveOptions& options, const Outcome& outcome) {
@@ -267,6 +308,23 @@ void warn_of_faint_light(const SolveOptions& options, Outcome& outcome) {
     print_warnings(std::cerr, faint);
 }
 
+/// What is there from earlier is better than what a mesh without its splits would give.
+int stopped_before_resuming(const SolveOptions& options, const Interrupts& interrupts) {
+    const auto fault =
+        options.resume->string() + ": stopped before --split was done; nothing is written";
+    if (!interrupts.requested()) throw InputError(fault);
+    std::cerr << printable(fault) << '\n';
+    return kInterrupted;
+}
+
+/// A solve that is not stopped has another mesh.
+void give_up_checkpoint(SolveOptions& options) {
+    if (!options.checkpoint) return;
+    print_warnings(std::cerr, {options.checkpoint->string() +
+                               ": not written: stopped before --split was done"});
+    options.checkpoint.reset();
+}
+
 int solve(SolveOptions options) {
     const Stopwatch total;
     auto work = prepare(options);
@@ -278,7 +336,10 @@ int solve(SolveOptions options) {
     require_memory(work, options, device.summary());
 
     const Interrupts interrupts;
-    split_where_light_varies(work, options, device, interrupts);
+    if (!split_where_light_varies(work, options, device, interrupts)) {
+        if (options.resume) return stopped_before_resuming(options, interrupts);
+        give_up_checkpoint(options);
+    }
     const Solving solving{work, device, interrupts};
     auto outcome = options.target_error ? solve_to_target(solving, options)
                                         : solve_and_estimate(solving, options);
@@ -295,7 +356,15 @@ int solve(SolveOptions options) {
     outcome.seconds.total = total.seconds();
     if (options.report) write_report(*options.report, options, work.mesh, outcome);
     if (!options.quiet) print_summary(std::cerr, options, outcome);
+    if (outcome.checkpoint_fault) throw OutputError(*outcome.checkpoint_fault);
     return interrupts.requested() ? kInterrupted : kDone;
+}
+
+void reject_with_target_error(const SolveOptions& options) {
+    if (options.snapshots.shots > 0 || options.snapshots.seconds > 0)
+        reject_both("--snapshot-every", "--target-error");
+    if (options.checkpoint) reject_both("--checkpoint", "--target-error");
+    if (options.resume) reject_both("--resume", "--target-error");
 }
 
 }  // namespace
@@ -305,11 +374,10 @@ void add_solve(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<SolveOptions>();
     add_solve_options(command, *options);
     on_chosen(command, [&chosen, options] {
-        options->solver.stop_every = options->snapshots.shots;
+        const auto checkpoint_shots = options->checkpoint ? options->checkpoint_every.shots : 0;
+        options->solver.stop_every = std::gcd(options->snapshots.shots, checkpoint_shots);
         options->solver.timed = options->verbose || options->report.has_value();
-        if (options->target_error &&
-            (options->snapshots.shots > 0 || options->snapshots.seconds > 0))
-            reject_both("--snapshot-every", "--target-error");
+        if (options->target_error) reject_with_target_error(*options);
         if (options->target_error)
             options->solver.tolerance =
                 std::min(options->solver.tolerance, *options->target_error / 4);

@@ -102,6 +102,23 @@ SnapshotInterval snapshot_interval(const OptionValue& value) {
     return {0, positive_number(seconds)};
 }
 
+void add_checkpoint_options(CLI::App& command, SolveOptions& options) {
+    add_text(
+        command,
+        {"--checkpoint", "FILE", "where to leave, now and then and at the end, what to go on from"},
+        options.checkpoint);
+    need(
+        command,
+        add_value(
+            command,
+            {"--checkpoint-every", "SHOTS|SECONDSs", "how often the checkpoint is written [60s]"},
+            [&](const OptionValue& value) { options.checkpoint_every = snapshot_interval(value); }),
+        "--checkpoint");
+    add_text(command,
+             {"--resume", "FILE", "go on from a checkpoint of the same scene and settings"},
+             options.resume);
+}
+
 // Of the EXR; coverage is there anyway.
 void wish_for(const OptionValue& layer, SolveOptions& options) {
     bool coverage = true;
@@ -233,6 +250,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
     add_accuracy_options(command, options);
     add_chart_options(command, options.charts);
     add_stop_options(command, options.solver);
+    add_checkpoint_options(command, options);
     add_picture_options(command, options);
     add_machine_options(command, options);
     add_talk_options(command, options);

@@ -17,7 +17,7 @@
 
 namespace hemirad {
 
-/// How often the picture so far is written; both 0: not.
+/// How often the picture so far is written, or the checkpoint; both 0: not.
 struct SnapshotInterval {
     std::uint64_t shots = 0;
     double seconds = 0;
@@ -32,6 +32,7 @@ struct LayerWishes {
 struct SolveOptions {
     std::filesystem::path scene, output;  ///< output empty: the scene's name with .exr, here
     std::optional<std::filesystem::path> gltf, preview, faces, report;
+    std::optional<std::filesystem::path> checkpoint, resume;
     MeshSettings mesh;
     /// A resolution, samples or sampling error of 0 is the dial's: set_accuracy().
     SolverSettings solver = {.resolution = 0, .sampling_error = 0};
@@ -45,7 +46,7 @@ struct SolveOptions {
     LayerWishes layers;
     std::string device;  ///< as mp1map::Device::open takes it
     std::uint32_t compute_units = 0;
-    SnapshotInterval snapshots;
+    SnapshotInterval snapshots, checkpoint_every = {.seconds = 60};
     bool quiet = false, verbose = false, no_progress = false;
 };
 

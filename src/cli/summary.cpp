@@ -113,6 +113,8 @@ void print_summary(std::ostream& out, const SolveOptions& options, const Outcome
             << duration_text(outcome.seconds.build_kernels) << '\n';
         print_kernels(out, outcome);
     }
+    if (options.checkpoint && !outcome.checkpoint_fault)
+        out << "wrote " << printable(options.checkpoint->string()) << '\n';
     for (const auto& file : outcome.outputs) out << "wrote " << printable(file.string()) << '\n';
 }
 

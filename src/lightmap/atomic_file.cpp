@@ -1,12 +1,15 @@
 #include "lightmap/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "errors.h"
@@ -24,39 +27,112 @@ namespace fs = std::filesystem;
     fail(path, error == 0 ? "cannot be written" : std::generic_category().message(error));
 }
 
-/// An empty file beside the target, removed at the end unless it took the target's place.
+/// Of a temporary file that has a name; a killed program may leave one.
+constexpr std::string_view kPrefix = ".hemirad-";
+
+/// An empty file beside the target, gone at the end unless it took the target's place. It gets a
+/// name only in that moment, so that a killed program leaves nothing behind; from the beginning
+/// where the file system knows no files without. While it lives it is locked, which tells it from
+/// what was left.
 class TemporaryFile {
   public:
     explicit TemporaryFile(const fs::path& target) : target_(target) {
-        const std::string prefix = ".hemirad-" + std::to_string(getpid()) + "-";
-        int attempt = 0;
-        do {
-            path_ = target.parent_path() / (prefix + std::to_string(attempt++));
-            descriptor_ = open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-        } while (descriptor_ < 0 && errno == EEXIST);
+        const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+        descriptor_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        if (descriptor_ >= 0 && faccessat(AT_FDCWD, path().c_str(), W_OK, AT_EACCESS) != 0) {
+            close(descriptor_);  // no /proc, so no way to its name
+            descriptor_ = -1;
+        }
+        while (descriptor_ < 0 && open_named()) {
+        }
+        if (descriptor_ >= 0) flock(descriptor_, LOCK_EX);
     }
     ~TemporaryFile() {
         if (descriptor_ < 0) return;
+        if (!kept_ && !name_.empty()) unlink(name_.c_str());
         close(descriptor_);
-        if (!kept_) unlink(path_.c_str());
     }
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
     bool is_open() const { return descriptor_ >= 0; }
-    const fs::path& path() const { return path_; }
+    fs::path path() const {
+        return name_.empty() ? fs::path("/proc/self/fd/" + std::to_string(descriptor_)) : name_;
+    }
 
     /// False, with errno, where disk or folder refuse.
     bool take_the_targets_place() {
-        kept_ = fsync(descriptor_) == 0 && std::rename(path_.c_str(), target_.c_str()) == 0;
+        kept_ = fsync(descriptor_) == 0 && (!name_.empty() || give_name()) &&
+                std::rename(name_.c_str(), target_.c_str()) == 0;
         return kept_;
     }
 
   private:
-    fs::path target_, path_;
+    fs::path name_number(int attempt) const {
+        return target_.parent_path() /
+               (std::string(kPrefix) + std::to_string(getpid()) + "-" + std::to_string(attempt));
+    }
+
+    template <class Make>
+    bool try_names(const Make& make) {
+        int attempt = 0;
+        bool made = false;
+        do {
+            name_ = name_number(attempt++);
+            made = make(name_.c_str());
+        } while (!made && errno == EEXIST);
+        if (!made) name_.clear();
+        return made;
+    }
+
+    /// False where there is no such file to be had. Otherwise there is one, unless somebody who
+    /// removes what was left found it before it was locked.
+    bool open_named() {
+        const bool made = try_names([&](const char* name) {
+            descriptor_ = open(name, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+            return descriptor_ >= 0;
+        });
+        if (!made) return false;
+        flock(descriptor_, LOCK_EX);
+        struct stat status {};
+        if (fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return true;
+        close(descriptor_);
+        descriptor_ = -1;
+        return true;
+    }
+
+    bool give_name() {
+        const fs::path nameless = path();
+        return try_names([&](const char* name) {
+            return linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+        });
+    }
+
+    fs::path target_, name_;
     int descriptor_ = -1;
     bool kept_ = false;
 };
+
+bool is_temporary(const std::string& name) {
+    return name.starts_with(kPrefix) &&
+           name.find_first_not_of("0123456789-", kPrefix.size()) == std::string::npos;
+}
+
+void remove_unless_locked(const fs::path& file) {
+    const int descriptor = open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) return;
+    struct stat status {};
+    if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+        flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+        unlink(file.c_str());
+    close(descriptor);
+}
+
+void remove_what_was_left(const fs::path& folder) {
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored))
+        if (is_temporary(entry->path().filename())) remove_unless_locked(entry->path());
+}
 
 /// Fills `file`; messages name `path`, what the user asked for.
 void fill(const fs::path& file, const fs::path& path,
@@ -112,8 +188,10 @@ void write_atomically(const fs::path& path, const std::function<void(std::ostrea
 void check_writable(const fs::path& path) {
     require_replaceable(path);
     if (is_device_or_pipe(path)) return;
-    const TemporaryFile temporary(resolved(path));
+    const fs::path target = resolved(path);
+    const TemporaryFile temporary(target);
     if (!temporary.is_open()) fail(path, errno);
+    remove_what_was_left(target.has_parent_path() ? target.parent_path() : ".");
 }
 
 }  // namespace hemirad

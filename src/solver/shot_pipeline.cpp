@@ -498,6 +498,38 @@ void ShotPipeline::enlarge_lists() {
     acu_.load(shot_, std::span<const device::Shot>(salvo));
 }
 
+SolveState ShotPipeline::state() {
+    const device::Shot books = acu_.unload(shot_).front();
+    return {books.shots,
+            books.repeated_shots,
+            books.least_surplus,
+            books.most_surplus,
+            acu_.unload(unshot_),
+            acu_.unload(received_),
+            acu_.unload(received_rest_),
+            acu_.unload(escaped_),
+            shots_of()};
+}
+
+void ShotPipeline::set_state(const SolveState& state) {
+    if (state.unshot.size() != unshot_.size() || state.received.size() != received_.size() ||
+        state.received_rest.size() != received_.size() || state.escaped.size() != escaped_.size() ||
+        state.shots_of.size() != shots_of_.size())
+        throw InputError("the state of another solve");
+    auto salvo = std::vector(member_count(), first_shot());
+    device::Shot& books = salvo.front();
+    books.shots = static_cast<std::uint32_t>(state.shots);
+    books.repeated_shots = static_cast<std::uint32_t>(state.repeated_shots);
+    books.least_surplus = state.least_surplus;
+    books.most_surplus = state.most_surplus;
+    acu_.load(shot_, std::span<const device::Shot>(salvo));
+    acu_.load(unshot_, std::span(state.unshot));
+    acu_.load(received_, std::span(state.received));
+    acu_.load(received_rest_, std::span(state.received_rest));
+    acu_.load(escaped_, std::span(state.escaped));
+    acu_.load(shots_of_, std::span(state.shots_of));
+}
+
 std::vector<double> ShotPipeline::received() {
     const auto sums = acu_.unload(received_), rests = acu_.unload(received_rest_);
     std::vector<double> result(sums.size());

@@ -13,6 +13,7 @@
 #include "mp1map/pe_array.h"
 #include "solver/near_pairs.h"
 #include "solver/patch_arrays.h"
+#include "solver/solve_state.h"
 
 namespace hemirad {
 
@@ -117,6 +118,12 @@ class ShotPipeline {
     /// After kBinsFull: makes room for the lists and lets the halted salvo be repeated.
     void enlarge_lists();
 
+    /// After the last shot, whatever of the next ones is under way.
+    SolveState state();
+    /// Of a pipeline that has not shot yet. A shot at nothing then finds the next shooters. Throws
+    /// InputError where the state is that of other patches or bands.
+    void set_state(const SolveState& state);
+
     std::vector<double> received();         ///< [band * stride + patch], of the emitted flux
     std::vector<float> unshot();            ///< [band * shooter_stride + shooter]
     std::vector<double> escaped();          ///< [band]
@@ -142,6 +149,7 @@ class ShotPipeline {
     const mp1map::PeArray& pe_array() const { return array_; }
     std::uint32_t stride() const { return stride_; }
     std::uint32_t shooter_stride() const { return shooter_stride_; }
+    std::uint32_t salvo() const { return salvo_; }
     std::size_t band_count() const { return band_count_; }
     mp1map::Acu& acu() { return acu_; }
     std::uint64_t device_bytes() const { return acu_.allocated_bytes(); }

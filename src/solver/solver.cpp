@@ -227,9 +227,15 @@ Progress ProgressiveSolver::advance(std::uint64_t passes) {
     return {state.shots, state.unshot_fraction, 0};
 }
 
+bool ProgressiveSolver::may_be_cut_short(std::uint64_t shots) const {
+    return shots + pipeline_.salvo() > settings_.max_shots;
+}
+
 std::uint64_t ProgressiveSolver::next_pause(std::uint64_t shots) const {
-    if (settings_.stop_every == 0) return settings_.max_shots;
-    return std::min(settings_.max_shots, (shots / settings_.stop_every + 1) * settings_.stop_every);
+    std::uint64_t pause = settings_.max_shots;
+    if (!may_be_cut_short(shots)) pause -= pipeline_.salvo() - 1;
+    if (settings_.stop_every == 0) return pause;
+    return std::min(pause, (shots / settings_.stop_every + 1) * settings_.stop_every);
 }
 
 std::uint64_t ProgressiveSolver::passes_to(std::uint64_t shots) const {
@@ -242,6 +248,7 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
     for (;;) {
         const device::Shot state = pipeline_.shot();
         if (state.status == kConverged || state.status == kExhausted) return Stop::converged;
+        if (!uncut_ && may_be_cut_short(state.shots)) uncut_ = pipeline_.state();
         if (state.shots >= std::min<std::uint64_t>(settings_.max_shots, kMostShots))
             return Stop::max_shots;
         const std::uint64_t pause = next_pause(state.shots);
@@ -259,6 +266,17 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
         if (!on_progress(progress)) return Stop::interrupted;
         if (progress.seconds >= settings_.time_limit) return Stop::time_limit;
     }
+}
+
+void ProgressiveSolver::resume(const SolveState& state) {
+    pipeline_.set_state(state);
+    pipeline_.set_shot_limit(settings_.max_shots, settings_.max_shots);
+    distribute_flux(pipeline_);  // at nothing, as at the beginning
+}
+
+SolveState ProgressiveSolver::state() {
+    SolveState state = pipeline_.state();
+    return uncut_ && state.shots >= settings_.max_shots ? *uncut_ : state;
 }
 
 Solution ProgressiveSolver::solution() {

@@ -107,6 +107,14 @@ class ProgressiveSolver {
     /// again. A scene that emits nothing has converged.
     Stop solve(const std::function<bool(const Progress&)>& on_progress);
 
+    /// Goes on from the state() of a solver of the same mesh and the same settings, but for limits
+    /// and a tolerance that were not met before: solve() then ends with the bits of one that never
+    /// stopped. To be called first. Throws InputError where the state is that of another mesh.
+    void resume(const SolveState& state);
+    /// The last state that solving without a limit of shots comes by as well: max_shots may have
+    /// cut short those that went at once.
+    SolveState state();
+
     Solution solution();
     Closure closure();
     std::uint64_t repeated_shots();  ///< of all, by known rows
@@ -120,12 +128,14 @@ class ProgressiveSolver {
     Progress advance(std::uint64_t passes);
     std::uint64_t next_pause(std::uint64_t shots) const;
     std::uint64_t passes_to(std::uint64_t shots) const;  // that make so many for certain
+    bool may_be_cut_short(std::uint64_t shots) const;    // those that go at once after so many
 
     const Mesh& mesh_;
     SolverSettings settings_;
     BandPlan plan_;
     ShotPipeline pipeline_;
-    std::uint64_t repeats_ = 0;  // shots by known rows that are sent off with each pass
+    std::uint64_t repeats_ = 0;        // shots by known rows that are sent off with each pass
+    std::optional<SolveState> uncut_;  // as far as max_shots decided nothing
 };
 
 }  // namespace hemirad

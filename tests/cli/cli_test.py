@@ -185,6 +185,7 @@ class BadOptions(CommandLine):
                 "--lanes": ("0", "2", "32"),
                 "--tile": ("64", "0x0"),
                 "--snapshot-every": ("0", "0s", "s", "-1s", "1m"),
+                "--checkpoint-every": ("0", "0s", "1m"),
         }.items():
             for value in values:
                 self.assert_rejected(f"{option}={value}", says=option)

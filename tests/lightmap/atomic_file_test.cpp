@@ -1,5 +1,7 @@
 #include "lightmap/atomic_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -166,6 +168,32 @@ TEST_F(AtomicFile, AFaultOfTheWriterLeavesNothing) {
     EXPECT_THROW(write_atomically(file("a.txt"), [](std::ostream&) { throw InputError("bad"); }),
                  InputError);
     EXPECT_TRUE(names_in_folder().empty());
+}
+
+TEST_F(AtomicFile, HasNoNameBeforeItIsWhole) {
+    std::set<std::string> names{"some"};
+
+    write_atomically(file("a.txt"), [&](std::ostream& stream) {
+        stream << "half" << std::flush;
+        names = names_in_folder();
+        stream << " and half";
+    });
+
+    EXPECT_TRUE(names.empty());
+    EXPECT_EQ(bytes_of(file("a.txt")), "half and half");
+}
+
+TEST_F(AtomicFile, WhatAKilledProgramLeftIsRemovedBeforeTheNext) {
+    for (const char* name : {".hemirad-12-0", ".hemirad-12-7", ".hemirad-12-0.exr", ".hemirad"})
+        std::ofstream(file(name)) << "half";
+    const int descriptor = open(file(".hemirad-12-7").c_str(), O_WRONLY);
+    ASSERT_EQ(flock(descriptor, LOCK_EX), 0);  // as by a program that is still at it
+
+    check_writable(file("a.txt"));
+
+    close(descriptor);
+    EXPECT_EQ(names_in_folder(),
+              (std::set<std::string>{".hemirad", ".hemirad-12-0.exr", ".hemirad-12-7"}));
 }
 
 TEST_F(AtomicFile, AskingBeforehandChangesNothing) {
