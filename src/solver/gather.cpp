@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 #include "solver/solver.h"
@@ -14,8 +15,6 @@ namespace {
 // Points between two looks at the device take about this long.
 constexpr double kSecondsBetweenLooks = 0.2;
 constexpr std::size_t kLeastBatch = 64, kMostBatch = 1u << 14;
-// As of shooters, see usable_salvo(), but bits do not depend on it.
-constexpr std::uint32_t kPointsAtOnce = 8;
 
 double largest(const std::vector<double>& values) {
     return values.empty() ? 0 : *std::ranges::max_element(values);
@@ -27,10 +26,10 @@ double unit_of(const std::vector<double>& radiosity) {
     return most > 0 ? most : 1;
 }
 
+// Of small meshes, too: bits do not depend on it.
 std::uint32_t points_at_once(const Mesh& mesh, const GatherSettings& settings) {
-    return usable_salvo(0, mesh.patches.size(), mesh.patches.size(), settings.resolution) > 1
-               ? kPointsAtOnce
-               : 1;
+    constexpr auto kMany = std::numeric_limits<std::uint64_t>::max();
+    return usable_salvo(0, kMany, mesh.patches.size(), settings.resolution);
 }
 
 PipelineSettings pipeline_settings(const GatherSettings& settings, std::uint32_t salvo) {

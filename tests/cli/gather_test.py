@@ -75,14 +75,6 @@ class Gather(CommandLine):
 
         self.assertNotEqual(*pictures)
 
-    def test_the_machine_changes_no_bit(self):
-        files = []
-        for machine in ((), ("--pe", "16x8", "--lanes", "4", "--compute-units", "1")):
-            self.run_to("a.exr", *GATHER, *machine)
-            files.append((self.folder / "a.exr").read_bytes())
-
-        self.assertEqual(*files)
-
     def test_bad_values(self):
         for arguments, says in ((("--gather", "8"), "--gather"), (("--gather", "x"), "--gather"),
                                 ((*GATHER, "--gather-error", "-1"), "--gather-error"),

@@ -63,7 +63,7 @@ Gathered gather(const Scene& scene, double patch_size, double texel_size, const 
         [&](std::span<const SurfacePoint> points, const TexelProgress&) {
             std::vector<double> found;
             for (const SurfacePoint& point : points) found.push_back(light(point.position));
-            return std::make_optional(std::vector{found});
+            return std::make_optional(std::vector<std::vector<double>>{found});
         });
     return result;
 }
@@ -136,13 +136,13 @@ TEST(GatherLight, APointKeepsOffTheFootOfAWallThatItsTexelLiesAcross) {
     const std::vector<glm::dvec3> wall{{2, 0, 0}, {2, 2, 0}, {2, 2, 1}, {2, 0, 1}};
     add_face(scene, wall, 0, 1);
     add_face(scene, reversed(wall), 0, 1);
-    double nearest = 1;
+    double nearest = 1;  // of texels whose centres lie at 0.4, 1.2, 2.0, ...
     const Light light = [&](const glm::dvec3& at) {
         if (at.z == 0) nearest = std::min(nearest, std::abs(at.x - 2));
         return 1.0;
     };
 
-    gather(scene, 0.5, 0.8, light);  // texels' centres lie at 0.4, 1.2, 2.0, ...
+    gather(scene, 0.5, 0.8, light, [](const glm::dvec3&) { return 1.0; });
 
     EXPECT_GT(nearest, 1e-3);
     EXPECT_LT(nearest, 1e-2);
