@@ -122,6 +122,8 @@ Bands irradiance_by(const Mesh& mesh, const Bands& radiosity, const GatherSettin
     return *gather.irradiance(points, [](std::size_t) { return true; });
 }
 
+const mp1map::PeArrayRequest kFineTiles{2, 1, 4, 8, 8};
+
 TEST(Gather, HasTheSameBitsOnEveryMachine) {
     const Mesh mesh = meshed(furnished_room(), 0.8);
     const Bands radiosity = roughly_lit(mesh);
@@ -133,7 +135,7 @@ TEST(Gather, HasTheSameBitsOnEveryMachine) {
     };
 
     EXPECT_EQ(first, on({}, 1));
-    EXPECT_EQ(first, on({16, 4, 4, 0, 0}, 0));
+    EXPECT_EQ(first, on(kFineTiles, 0));
 }
 
 // Lists are sized for patches that touch few tiles; those who find no room are asked again.
@@ -143,10 +145,13 @@ TEST(Gather, HasTheSameBitsWhereTheListsHadNoRoom) {
     auto points = points_of(mesh);
     points.resize(11);
     const auto seen = [&](const mp1map::PeArrayRequest& pe_array) {
-        return irradiance_by(mesh, radiosity, through(FormFactorMode::count, pe_array), points);
+        return irradiance_by(mesh, radiosity, through(FormFactorMode::analytic, pe_array), points);
     };
 
-    EXPECT_EQ(seen({4, 1, 16, 64, 64}), seen({2, 1, 4, 8, 8}));
+    const Bands first = seen({});
+
+    EXPECT_GT(*std::ranges::min_element(first[0]), 0);
+    EXPECT_EQ(first, seen(kFineTiles));
 }
 
 TEST(Gather, APointHasTheSameBitsInAnyCompany) {
