@@ -96,7 +96,8 @@ Lightmap layered_lightmap(const SolveOptions& options, const Mesh& mesh, const C
         layers.push_back({"error",
                           "estimated error of the " + name_of(options.quantity) + ", W/m^2",
                           &bands_of(*error, options.quantity)});
-    Lightmap lightmap = rasterize_together(options, mesh, layout, atlas, solution, layers, gathered);
+    Lightmap lightmap =
+        rasterize_together(options, mesh, layout, atlas, solution, layers, gathered);
     if (options.layers.normal) lightmap.layers["normal"] = normal_layer(mesh, layout, atlas);
     if (options.layers.position) lightmap.layers["position"] = position_layer(mesh, layout, atlas);
     return lightmap;

@@ -8,7 +8,8 @@
 
 namespace hemirad {
 
-/// Rows, or what else is counted, done and time left, on standard error, as ProgressDisplay does for shots.
+/// Rows, or what else is counted, done and time left, on standard error, as ProgressDisplay does
+/// for shots.
 class RowDisplay {
   public:
     explicit RowDisplay(ProgressStyle style, std::string noun = "row");

@@ -61,9 +61,10 @@ Work prepare(SolveOptions& options) {
     options.atlas_count = static_cast<std::uint32_t>(work.layout.atlases.size());
     if (options.atlas_count > 1) check_outputs(options);
     if (options.gltf && options.atlas_count > 1)
-        throw InputError(work.scene.file + ": a glTF takes one lightmap, and this needs " +
-                         std::to_string(options.atlas_count) +
-                         " atlases; raise --texel-size or --atlas-size, or take --charts generated");
+        throw InputError(
+            work.scene.file + ": a glTF takes one lightmap, and this needs " +
+            std::to_string(options.atlas_count) +
+            " atlases; raise --texel-size or --atlas-size, or take --charts generated");
     return work;
 }
 
@@ -307,8 +308,8 @@ int solve(SolveOptions options) {
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
     if (options.gather && !interrupts.requested())
-        outcome.gathered = gather_lightmaps(options, work.mesh, work.layout, outcome.solution,
-                                            device, interrupts);
+        outcome.gathered =
+            gather_lightmaps(options, work.mesh, work.layout, outcome.solution, device, interrupts);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);

@@ -41,7 +41,7 @@ struct SolveOptions {
     ChartSettings charts;
     std::optional<std::uint32_t> gather;  ///< N: texels look through N x N proxels of their own
     double gather_error = 0.01;           ///< of what they then interpolate
-    std::uint32_t atlas_count = 1;  ///< as the layout of the scene's charts turns out
+    std::uint32_t atlas_count = 1;        ///< as the layout of the scene's charts turns out
     Quantity quantity = Quantity::irradiance;
     PixelType pixels = PixelType::float32;
     LayerWishes layers;

@@ -82,8 +82,8 @@ std::uint32_t GatherCells::in_atlas(std::uint32_t texel) const {
 
 glm::dvec2 GatherCells::place_of(std::uint32_t texel, std::uint32_t map) const {
     const auto& within = footprints_.within;
-    return footprints_.maps[map].place_of({within.x + texel % within.width + 0.5,
-                                           within.y + texel / within.width + 0.5});
+    return footprints_.maps[map].place_of(
+        {within.x + texel % within.width + 0.5, within.y + texel / within.width + 0.5});
 }
 
 glm::dvec2 GatherCells::place_of(std::uint32_t texel) const {
@@ -123,8 +123,8 @@ void GatherCells::lay_cells() {
     if (shown_count_ == 0) return;
     for (std::uint32_t y = all.top; y == all.top || y < all.bottom; y += kCoarsest)
         for (std::uint32_t x = all.left; x == all.left || x < all.right; x += kCoarsest)
-            cells_.push_back({x, y, std::min(x + kCoarsest, all.right),
-                              std::min(y + kCoarsest, all.bottom)});
+            cells_.push_back(
+                {x, y, std::min(x + kCoarsest, all.right), std::min(y + kCoarsest, all.bottom)});
 }
 
 void GatherCells::want(std::uint32_t texel) {
@@ -213,7 +213,9 @@ bool GatherCells::is_uniform(const Cell& cell) const {
     if (!is_shown(at(cell.left, cell.top))) return false;
     const std::uint32_t index = mesh_.patches[first.patch].surface;
     const Surface& surface = mesh_.surfaces[index];
-    const auto side = [&](std::uint32_t patch) { return surface.side(patch - surface.first_patch); };
+    const auto side = [&](std::uint32_t patch) {
+        return surface.side(patch - surface.first_patch);
+    };
     const double slack = kSameMap * texel_length(first.map);
     return all_of(cell, [&](std::uint32_t x, std::uint32_t y) {
         const std::uint32_t texel = at(x, y);
@@ -228,9 +230,9 @@ bool GatherCells::is_uniform(const Cell& cell) const {
 bool GatherCells::is_open(const Cell& cell) const {
     const Footprint& first = footprints_.texels[at(cell.left, cell.top)];
     const std::uint32_t surface = mesh_.patches[first.patch].surface;
-    const std::array corners{
-        place_of(at(cell.left, cell.top)), place_of(at(cell.right, cell.top)),
-        place_of(at(cell.right, cell.bottom)), place_of(at(cell.left, cell.bottom))};
+    const std::array corners{place_of(at(cell.left, cell.top)), place_of(at(cell.right, cell.top)),
+                             place_of(at(cell.right, cell.bottom)),
+                             place_of(at(cell.left, cell.bottom))};
     for (std::size_t i = 0; i < corners.size(); ++i)
         for (std::size_t j = i + 1; j < corners.size(); ++j)
             if (!blend_.is_open(surface, corners[i], corners[j])) return false;

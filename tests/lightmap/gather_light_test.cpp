@@ -41,8 +41,8 @@ struct Gathered {
         for (std::uint32_t y = 0; y < layout.charts[chart].height; ++y)
             for (std::uint32_t x = 0; x < layout.charts[chart].width; ++x) {
                 const double expected = truth(point(chart, x, y));
-                largest = std::max(largest, std::abs(at(chart, int(x), int(y)) - expected) /
-                                                std::abs(expected));
+                largest = std::max(
+                    largest, std::abs(at(chart, int(x), int(y)) - expected) / std::abs(expected));
             }
         return largest;
     }
@@ -58,13 +58,14 @@ Gathered gather(const Scene& scene, double patch_size, double texel_size, const 
     result.layout = lay_out_charts(result.mesh, {.texel_size = texel_size});
     result.lightmap =
         rasterize(result.mesh, solution_of(values), result.layout, Quantity::irradiance);
-    result.light = *gather_light(
-        result.mesh, result.layout, 0, {values}, error,
-        [&](std::span<const SurfacePoint> points, const TexelProgress&) {
-            std::vector<double> found;
-            for (const SurfacePoint& point : points) found.push_back(light(point.position));
-            return std::make_optional(std::vector<std::vector<double>>{found});
-        });
+    result.light =
+        *gather_light(result.mesh, result.layout, 0, {values}, error,
+                      [&](std::span<const SurfacePoint> points, const TexelProgress&) {
+                          std::vector<double> found;
+                          for (const SurfacePoint& point : points)
+                              found.push_back(light(point.position));
+                          return std::make_optional(std::vector<std::vector<double>>{found});
+                      });
     return result;
 }
 
@@ -110,9 +111,7 @@ TEST(GatherLight, AShadowsEdgeIsGathered) {
 
 // Between the texels that a cell starts from.
 TEST(GatherLight, AStripeThatThePatchesKnowOfIsGathered) {
-    const Light stripe = [](const glm::dvec3& at) {
-        return at.x > 1.15 && at.x < 1.4 ? 1.0 : 2.0;
-    };
+    const Light stripe = [](const glm::dvec3& at) { return at.x > 1.15 && at.x < 1.4 ? 1.0 : 2.0; };
     const Light even = [](const glm::dvec3&) { return 2.0; };
 
     EXPECT_LT(gather(floor_of(0, 0, 4, 4), 0.25, 0.0625, stripe).largest_error(0, stripe), 1e-6);
@@ -187,11 +186,13 @@ TEST(GatherLight, WhereThePlaneGoesOnTheGutterHasTheLightOfTheNextChart) {
     for (int y = 0; y < 32; ++y) {
         EXPECT_NEAR(gathered.at(0, 32, y), dome(gathered.point(0, 32, y)), 1e-6);
         EXPECT_NEAR(gathered.at(1, -1, y), dome(gathered.point(1, -1, y)), 1e-6);
-        EXPECT_EQ(gathered.mesh.patches[gathered.light.patch[texel_at(
-                                            gathered.lightmap, gathered.layout.charts[0].x + 32,
-                                            gathered.layout.charts[0].y + std::uint32_t(y))]]
-                      .surface,
-                  gathered.layout.charts[0].surface);
+        EXPECT_EQ(
+            gathered.mesh
+                .patches[gathered.light
+                             .patch[texel_at(gathered.lightmap, gathered.layout.charts[0].x + 32,
+                                             gathered.layout.charts[0].y + std::uint32_t(y))]]
+                .surface,
+            gathered.layout.charts[0].surface);
     }
 }
 
