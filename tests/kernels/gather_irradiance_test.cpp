@@ -145,7 +145,10 @@ std::vector<device::Shot> aimed(std::int32_t first, std::int32_t end, std::int32
     options.salvo = 3;
     KernelRun run("aim_points", options);
     std::vector<device::Shot> before(6);
-    for (auto& shot : before) shot = {.shooter = 55, .status = kRunning};
+    for (auto& shot : before) {
+        shot.shooter = 55;
+        shot.status = kRunning;
+    }
     before[1].status = status;
     auto salvo = run.plural(before);
     run.issue({6, 1}, salvo, run.plural(numbered_points(8)), first, end);

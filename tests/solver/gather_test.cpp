@@ -150,7 +150,7 @@ TEST(Gather, HasTheSameBitsWhereTheListsHadNoRoom) {
 
     const Bands first = seen({});
 
-    EXPECT_GT(*std::ranges::min_element(first[0]), 0);
+    EXPECT_GT(first[0][0], 0.1);  // of patch 0, which looks at all of them
     EXPECT_EQ(first, seen(kFineTiles));
 }
 
