@@ -140,7 +140,10 @@ TEST(Gather, HasTheSameBitsOnEveryMachine) {
 
 // Lists are sized for patches that touch few tiles; those who find no room are asked again.
 TEST(Gather, HasTheSameBitsWhereTheListsHadNoRoom) {
-    const Mesh mesh = mesh_of(soup(20000, 1.0, 5), 0.7);
+    Mesh mesh = mesh_of(soup(20000, 1.0, 5), 0.7);
+    for (const Patch& patch : mesh.patches)
+        mesh.surfaces[patch.surface].u_axis =
+            glm::normalize(mesh.vertices[patch.corners[1]] - mesh.vertices[patch.corners[0]]);
     const Bands radiosity{std::vector<double>(mesh.patches.size(), 1.0)};
     auto points = points_of(mesh);
     points.resize(11);
