@@ -80,6 +80,12 @@ typedef struct {
     uint32_t repeated_shots, repeated_salvos;  // by known rows alone
 } Shot;
 
+// Where a hemisphere of the final gather stands: a point on a surface, `plane` as `planes`.
+typedef struct {
+    int32_t origin[3], plane;  // grid steps
+    float u_axis[3], v_axis[3], normal[3];
+} GatherPoint;
+
 // kClusterPatches consecutive patches: the box around their corners; the mean of their normals, how
 // far a normal is from it, and how far a corner is from the box's centre along it.
 #define kClusterPatches 64
@@ -132,6 +138,7 @@ typedef struct {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 8);
 static_assert(sizeof(Shot) == 140);
+static_assert(sizeof(GatherPoint) == 52);
 static_assert(sizeof(Cluster) == 44);
 static_assert(sizeof(Level) == 8);
 static_assert(sizeof(Projection) == 64);

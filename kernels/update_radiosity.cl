@@ -5,36 +5,8 @@
 // rows: [row][patch]. received, received_rest: [band][patch]; shot_flux: [shooter][band]; flux in
 // normalised units.
 #include "compensated.clh"
+#include "form_factors.clh"
 #include "salvo.clh"
-
-#ifdef FORM_FACTOR_ANALYTIC
-
-// Of LANES patches, closed (spread_residual.cl); the sums are spent. Those of patches that are not
-// before the shooter are 0 already.
-static real_v take_form_factors(const __global Shot* shot, __global float* factors, int stride,
-                                int patch) {
-    const real_v unblocked = load_v(kUnblockedFactor * stride + patch, factors);
-    if (!any_v(less_v((real_v)0.0f, unblocked))) return (real_v)0.0f;
-    const real_v visible = load_v(kVisibleFactor * stride + patch, factors);
-    const real_v doubtful = load_v(kDoubtfulFactor * stride + patch, factors);
-    for (int kind = 0; kind < kFactorKinds; ++kind)
-        *real_vectors(factors + kind * stride + patch) = (real_v)0.0f;
-    return fma(doubtful, (real_v)shot->residual_share, visible * shot->factor_scale);
-}
-
-#else
-
-// Proxels of LANES patches over those of the disks; the counts are spent.
-static real_v take_counts(__global int* proxel_count, float proxels_shot, int patch, int* owned) {
-    const int_v counts = load_v(patch, proxel_count);
-    if (any_v(counts != 0)) {
-        *int_vectors(proxel_count + patch) = (int_v)0;
-        for (int lane = 0; lane < LANES; ++lane) *owned += int_lane_of(counts, lane);
-    }
-    return to_real_v(counts) / proxels_shot;
-}
-
-#endif
 
 // A member's form factors to LANES patches; those that were not known are spent.
 static real_v form_factor_to_patches(const __global Shot* shot, __global int* proxel_count,

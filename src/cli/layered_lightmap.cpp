@@ -42,15 +42,20 @@ std::vector<PatchLayer> part_layers(const Solution& solution, Quantity quantity)
 }
 
 /// One pass over the charts makes the bands of all of them.
-Lightmap rasterize_together(const Mesh& mesh, const ChartLayout& layout, std::uint32_t atlas,
-                            const Solution& solution, Quantity quantity,
-                            const std::vector<PatchLayer>& layers) {
+Lightmap rasterize_together(const SolveOptions& options, const Mesh& mesh,
+                            const ChartLayout& layout, std::uint32_t atlas,
+                            const Solution& solution, const std::vector<PatchLayer>& layers,
+                            const GatheredLightmaps* gathered) {
     Solution all;
-    all.irradiance = bands_of(solution, quantity);
+    all.irradiance = bands_of(solution, options.quantity);
     for (const PatchLayer& layer : layers)
         all.irradiance.insert(all.irradiance.end(), layer.bands->begin(), layer.bands->end());
     all.bands.resize(all.irradiance.size());
     Lightmap lightmap = rasterize(mesh, all, layout, Quantity::irradiance, atlas);
+    // The layers of the solution's parts come first, as their light does in what was gathered.
+    if (gathered != nullptr)
+        put_gathered(options, mesh, solution, gathered->atlases[atlas], options.quantity,
+                     lightmap.values);
     lightmap.bands = solution.bands;
     auto next = lightmap.values.begin() + static_cast<std::ptrdiff_t>(solution.bands.size());
     for (const PatchLayer& layer : layers) {
@@ -81,7 +86,8 @@ Solution nothing_of(const SolveOptions& options, const Mesh& mesh) {
 }  // namespace
 
 Lightmap layered_lightmap(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                          std::uint32_t atlas, const Solution& solution, const Solution* error) {
+                          std::uint32_t atlas, const Solution& solution, const Solution* error,
+                          const GatheredLightmaps* gathered) {
     const Bands emission = options.layers.emission ? emission_of(mesh) : Bands{};
     auto layers = part_layers(solution, options.quantity);
     if (options.layers.emission)
@@ -90,7 +96,8 @@ Lightmap layered_lightmap(const SolveOptions& options, const Mesh& mesh, const C
         layers.push_back({"error",
                           "estimated error of the " + name_of(options.quantity) + ", W/m^2",
                           &bands_of(*error, options.quantity)});
-    Lightmap lightmap = rasterize_together(mesh, layout, atlas, solution, options.quantity, layers);
+    Lightmap lightmap =
+        rasterize_together(options, mesh, layout, atlas, solution, layers, gathered);
     if (options.layers.normal) lightmap.layers["normal"] = normal_layer(mesh, layout, atlas);
     if (options.layers.position) lightmap.layers["position"] = position_layer(mesh, layout, atlas);
     if (options.solver.count_shots)

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/gather_lightmaps.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
 #include "solver/accuracy.h"
@@ -36,6 +37,7 @@ struct Outcome {
     Accuracy accuracy;  ///< that it was solved with
     std::optional<Error> error;
     Closure closure;
+    std::optional<GatheredLightmaps> gathered;
     std::uint64_t repeated_shots = 0;
     std::uint64_t resumed_shots = 0;  ///< of all, those before --resume
     std::optional<std::string> checkpoint_fault;

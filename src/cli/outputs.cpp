@@ -123,24 +123,30 @@ void check_outputs(const SolveOptions& options) {
 }
 
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                   const Solution& solution, const Solution* error) {
+                   const Solution& solution, const Solution* error,
+                   const GatheredLightmaps* gathered) {
     for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
         write_lightmap(options, atlas,
-                       layered_lightmap(options, mesh, layout, atlas, solution, error),
+                       layered_lightmap(options, mesh, layout, atlas, solution, error, gathered),
                        attributes_of(options, solution));
 }
 
 void write_solved_scene(const SolveOptions& options, const Scene& scene,
                         const std::vector<Camera>& cameras, const Mesh& mesh,
-                        const ChartLayout& layout, const Solution& solution) {
+                        const ChartLayout& layout, const Solution& solution,
+                        const GatheredLightmaps* gathered) {
     if (!options.gltf) return;
     const auto folder = fs::absolute(*options.gltf).parent_path();
     ChartLayout downwards = layout;  // as V always runs in glTF
     downwards.flip_v = false;
     std::vector<LightmapImage> images;
-    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
-        images.push_back(
-            lightmap_image(rasterize(mesh, solution, layout, Quantity::irradiance, atlas)));
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas) {
+        Lightmap lightmap = rasterize(mesh, solution, layout, Quantity::irradiance, atlas);
+        if (gathered != nullptr)
+            put_gathered(options, mesh, solution, gathered->atlases[atlas], Quantity::irradiance,
+                         lightmap.values);
+        images.push_back(lightmap_image(lightmap));
+    }
     write_gltf(*options.gltf, scene, mesh, cameras, lightmap_uvs(scene, mesh, downwards), images,
                place_of(options.output).lexically_relative(place_of(folder)));
 }

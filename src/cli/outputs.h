@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/gather_lightmaps.h"
 #include "cli/solve_options.h"
 #include "lightmap/chart_layout.h"
 #include "scene/camera.h"
@@ -32,9 +33,10 @@ void check_distinct(const std::filesystem::path& scene,
 void check_outputs(const SolveOptions& options);
 
 /// Lightmaps, with their layers, and previews of the solution so far; `error`, if not null, is a
-/// layer.
+/// layer, and what was `gathered` is shown instead of what patches tell.
 void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                   const Solution& solution, const Solution* error = nullptr);
+                   const Solution& solution, const Solution* error = nullptr,
+                   const GatheredLightmaps* gathered = nullptr);
 
 /// As write_picture() and write_solved_scene(), with_ambient(); the lightmap's header says so.
 void write_interim_picture(const SolveOptions& options, const Scene& scene,
@@ -44,7 +46,8 @@ void write_interim_picture(const SolveOptions& options, const Scene& scene,
 /// The scene with its irradiance and the cameras, if the options ask for it.
 void write_solved_scene(const SolveOptions& options, const Scene& scene,
                         const std::vector<Camera>& cameras, const Mesh& mesh,
-                        const ChartLayout& layout, const Solution& solution);
+                        const ChartLayout& layout, const Solution& solution,
+                        const GatheredLightmaps* gathered = nullptr);
 
 /// A warning for each band whose light is so weak that the lightmap's pixels lose digits of all of
 /// it.

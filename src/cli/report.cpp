@@ -94,12 +94,21 @@ Json error_json(const Outcome& outcome) {
             {"shooter_samples", outcome.error->against.shooter_samples}};
 }
 
-Json seconds_json(const Outcome::Seconds& seconds) {
+/// null where it was not asked for, or interrupted.
+Json gather_json(const Outcome& outcome) {
+    if (!outcome.gathered) return nullptr;
+    return {{"texels_gathered", outcome.gathered->gathered()},
+            {"texels_interpolated", outcome.gathered->interpolated()}};
+}
+
+Json seconds_json(const Outcome& outcome) {
+    const auto& seconds = outcome.seconds;
     Json stages = Json::object();
     for (const auto& [kernel, spent] : seconds.per_kernel) stages[kernel] = spent.first;
     return {{"total", seconds.total},
             {"build_kernels", seconds.build_kernels},
             {"solve", seconds.solve},
+            {"gather", outcome.gathered ? outcome.gathered->seconds : 0},
             {"lightmap", seconds.lightmap},
             {"per_shot_median", seconds.per_shot_median},
             {"per_stage", stages}};
@@ -131,7 +140,8 @@ void write_report(const std::filesystem::path& path, const SolveOptions& options
         {"lights", lights_json(outcome.solution)},
         {"error", error_json(outcome)},
         {"closure", {{"min", outcome.closure.least}, {"max", outcome.closure.most}}},
-        {"seconds", seconds_json(outcome.seconds)},
+        {"gather", gather_json(outcome)},
+        {"seconds", seconds_json(outcome)},
         {"peak_memory_bytes", peak_memory_bytes()},
         {"outputs", outputs_json(outcome)},
         {"warnings", outcome.warnings}};

@@ -1,6 +1,7 @@
 #include "cli/row_display.h"
 
 #include <iostream>
+#include <utility>
 
 #include "cli/text.h"
 
@@ -16,7 +17,8 @@ std::chrono::milliseconds interval(ProgressStyle style) {
 
 }  // namespace
 
-RowDisplay::RowDisplay(ProgressStyle style) : style_(style), next_(start_ + interval(style)) {}
+RowDisplay::RowDisplay(ProgressStyle style, std::string noun)
+    : style_(style), noun_(std::move(noun)), next_(start_ + interval(style)) {}
 
 RowDisplay::~RowDisplay() {
     if (on_screen_) std::cerr << kEraseLine << std::flush;
@@ -28,21 +30,22 @@ void RowDisplay::show(std::size_t done, std::size_t all) {
     next_ = now + interval(style_);
     const double seconds = std::chrono::duration<double>(now - start_).count();
     on_screen_ = style_ == ProgressStyle::bar;
-    const auto text = row_text(done, all, seconds, on_screen_);
+    const auto text = row_text(done, all, seconds, on_screen_, noun_);
     if (on_screen_)
         std::cerr << kEraseLine << text << std::flush;
     else
         std::cerr << text << '\n';
 }
 
-std::string row_text(std::size_t done, std::size_t all, double seconds, bool with_bar) {
+std::string row_text(std::size_t done, std::size_t all, double seconds, bool with_bar,
+                     const std::string& noun) {
     constexpr std::size_t kWidth = 24;
     const double share = all > 0 ? double(done) / double(all) : 1;
     const auto filled = std::size_t(double(kWidth) * share);
     const std::string bar =
         "[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] ";
     const std::string left = share > 0 ? duration_text(seconds * (1 - share) / share) : "?";
-    return (with_bar ? bar : "") + std::to_string(done) + " of " + counted(all, "row") + ", " +
+    return (with_bar ? bar : "") + std::to_string(done) + " of " + counted(all, noun) + ", " +
            left + " left";
 }
 

@@ -8,10 +8,11 @@
 
 namespace hemirad {
 
-/// Rows done and time left, on standard error, as ProgressDisplay does for shots.
+/// Rows, or what else is counted, done and time left, on standard error, as ProgressDisplay does
+/// for shots.
 class RowDisplay {
   public:
-    explicit RowDisplay(ProgressStyle style);
+    explicit RowDisplay(ProgressStyle style, std::string noun = "row");
     ~RowDisplay();
     RowDisplay(const RowDisplay&) = delete;
     RowDisplay& operator=(const RowDisplay&) = delete;
@@ -22,12 +23,14 @@ class RowDisplay {
     using Clock = std::chrono::steady_clock;
 
     ProgressStyle style_;
+    std::string noun_;
     Clock::time_point start_ = Clock::now();
     Clock::time_point next_;
     bool on_screen_ = false;
 };
 
 /// "[====    ] 10 of 40 rows, 3 s left"; the bar only where asked for.
-std::string row_text(std::size_t done, std::size_t all, double seconds, bool with_bar);
+std::string row_text(std::size_t done, std::size_t all, double seconds, bool with_bar,
+                     const std::string& noun = "row");
 
 }  // namespace hemirad

@@ -133,6 +133,18 @@ std::uint64_t resume(ProgressiveSolver& solver, const Work& work, const SolveOpt
     return shots;
 }
 
+/// The solver has given its own back by then.
+void require_gather_memory(const Work& work, const SolveOptions& options,
+                           const mp1map::DeviceSummary& device) {
+    if (!options.gather) return;
+    const auto needed = gather_bytes(work.mesh, gathered_bands(options, work.mesh),
+                                     gather_settings(options), device);
+    if (needed <= device.global_memory) return;
+    throw InputError(work.scene.file + ": --gather needs " + bytes_text(needed) + ", " +
+                     device.name + " has " + bytes_text(device.global_memory) +
+                     "; raise --patch-size or lower --gather");
+}
+
 Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& options,
            const Interrupts& interrupts, Checkpoints& checkpoints, ShotClock& shot_clock) {
     Snapshots snapshots(options.snapshots);
@@ -287,9 +299,11 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
 
 void write_results(const Work& work, const SolveOptions& options, const Outcome& outcome) {
     const bool layer = options.estimate_error && outcome.error;
+    const auto* const gathered = outcome.gathered ? &*outcome.gathered : nullptr;
     write_picture(options, work.mesh, work.layout, outcome.solution,
-                  layer ? &outcome.error->by_patch : nullptr);
-    write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout, outcome.solution);
+                  layer ? &outcome.error->by_patch : nullptr, gathered);
+    write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout, outcome.solution,
+                       gathered);
     if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
 }
 
@@ -334,6 +348,7 @@ int solve(SolveOptions options) {
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
     require_memory(work, options, device.summary());
+    require_gather_memory(work, options, device.summary());
 
     const Interrupts interrupts;
     if (!split_where_light_varies(work, options, device, interrupts)) {
@@ -349,6 +364,9 @@ int solve(SolveOptions options) {
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
+    if (options.gather && !interrupts.requested())
+        outcome.gathered =
+            gather_lightmaps(options, work.mesh, work.layout, outcome.solution, device, interrupts);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);

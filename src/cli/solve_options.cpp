@@ -87,6 +87,23 @@ void add_chart_options(CLI::App& command, ChartSettings& charts) {
              "V runs up from the lightmap's bottom row, not down from its top [off]");
 }
 
+void add_gather(CLI::App& command, SolveOptions& options) {
+    add_value(command,
+              {"--gather", "N",
+               "texels look through N x N proxels of their own; not from patches' light [off]"},
+              [&](const OptionValue& value) {
+                  options.gather = static_cast<std::uint32_t>(whole_number(value, 16, 8192));
+              });
+    need(command,
+         add_value(command,
+                   {"--gather-error", "E",
+                    "gathered light is interpolated up to an error of E of it; 0: nowhere [0.01]"},
+                   [&](const OptionValue& value) {
+                       options.gather_error = value.text == "0" ? 0 : fraction(value);
+                   }),
+         "--gather");
+}
+
 void add_stop_options(CLI::App& command, SolverSettings& solver) {
     add_value(command, {"--tolerance", "T", "stop where unshot / emitted flux is below T [1e-3]"},
               [&](const OptionValue& value) { solver.tolerance = fraction(value); });
@@ -249,6 +266,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
     add_file_options(command, options);
     add_accuracy_options(command, options);
     add_chart_options(command, options.charts);
+    add_gather(command, options);
     add_stop_options(command, options.solver);
     add_checkpoint_options(command, options);
     add_picture_options(command, options);
@@ -367,6 +385,10 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         result.emplace_back("--max-shots", std::to_string(solver.max_shots));
     if (std::isfinite(solver.time_limit))
         result.emplace_back("--time-limit", number_text(solver.time_limit));
+    if (options.gather) {
+        result.emplace_back("--gather", std::to_string(*options.gather));
+        result.emplace_back("--gather-error", number_text(options.gather_error));
+    }
     if (options.pixels == PixelType::half) result.emplace_back("--half", "");
     if (solver.variants.incremental) result.emplace_back("--evaluate", "incremental");
     if (solver.variants.constant_distance) result.emplace_back("--distance", "constant");

@@ -106,6 +106,10 @@ void print_summary(std::ostream& out, const SolveOptions& options, const Outcome
               "%.3g "
               "W/m^2\n",
               outcome.error->relative_rms, outcome.error->largest);
+    if (outcome.gathered)
+        out << "light gathered at " << counted(outcome.gathered->gathered(), "texel")
+            << ", interpolated at " << outcome.gathered->interpolated() << ", in "
+            << duration_text(outcome.gathered->seconds) << '\n';
     print(out, "closure %.9g to %.9g, %s in all\n", outcome.closure.least, outcome.closure.most,
           duration_text(outcome.seconds.total).c_str());
     if (options.verbose) {

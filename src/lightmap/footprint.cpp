@@ -45,6 +45,8 @@ class FootprintBuilder {
     Footprints take(std::uint32_t padding) {
         for (Footprint& texel : footprints_.texels) snap(texel);
         mark_shown();
+        for (std::uint32_t i = 0; i < shown_.size(); ++i)
+            if (shown_[i]) footprints_.texels[i].from = i;
         fill_gutters(padding);
         fill_hidden();
         return std::move(footprints_);
@@ -107,6 +109,7 @@ class FootprintBuilder {
         distances[to] = distance;
         footprints_.texels[to].patch = footprints_.texels[from].patch;
         footprints_.texels[to].map = footprints_.texels[from].map;
+        footprints_.texels[to].from = static_cast<std::uint32_t>(from);
     }
 
     /// What is under a block from its rim on, in steps of a texel.
@@ -126,6 +129,7 @@ class FootprintBuilder {
                 if (!is_hidden(to)) return;
                 texels[to].patch = texels[i].patch;
                 texels[to].map = texels[i].map;
+                texels[to].from = texels[i].from;
                 front.push_back(to);
             };
             if (x > 0) spread(i - 1);

@@ -21,6 +21,8 @@ struct PlaceMap {
     }
 };
 
+inline constexpr std::uint32_t kNoTexel = 0xffffffffu;
+
 /// What part of a texel surfaces fill, and whose light it shows: that of the patch at its centre,
 /// or where there is none of the one that fills the most; of a hidden one only where there is no
 /// other.
@@ -29,6 +31,9 @@ struct Footprint {
     float largest = 0.0f;
     std::uint32_t patch = kNoPatch;
     std::uint32_t map = 0;
+    /// Which of Footprints::texels shows what it shows: itself, or what it has its patch from;
+    /// kNoTexel where the patch is hidden and nothing else is near.
+    std::uint32_t from = kNoTexel;
 };
 
 /// Of a part of an atlas, row by row.

@@ -197,20 +197,27 @@ bool LightBlend::sees(std::uint32_t patch, std::uint32_t other) const {
 
 void LightBlend::add_beyond(std::uint32_t patch, const glm::dvec2& place, double weight,
                             std::vector<PatchWeight>& made_of) {
+    const std::uint32_t found = beyond(patch, place);
+    if (found == kNoPatch) return;
+    const Surface& own = mesh_.surfaces[mesh_.patches[patch].surface];
+    const Surface& there = mesh_.surfaces[mesh_.patches[found].surface];
+    blend_nodes(found, place_on(there, world_of(own, place)), weight, false, made_of);
+}
+
+std::uint32_t LightBlend::beyond(std::uint32_t patch, const glm::dvec2& place) const {
     const std::uint32_t own = mesh_.patches[patch].surface;
     const Surface& surface = mesh_.surfaces[own];
     const glm::dvec2& from = lookups_[own].centroid(patch);
-    if (neighbours_[own].empty() || !lookups_[own].is_open(from, place)) return;
+    if (neighbours_[own].empty() || !lookups_[own].is_open(from, place)) return kNoPatch;
     const glm::dvec3 point = world_of(surface, place), eye = world_of(surface, from);
     for (const std::uint32_t other : neighbours_[own]) {
         const Surface& there = mesh_.surfaces[other];
         const PatchLookup& lookup = lookups_[other];
         const std::uint32_t found = lookup.at(place_on(there, point));
         if (found == kNoPatch || hidden_[found]) continue;
-        if (!lookup.is_open(place_on(there, eye), lookup.centroid(found))) continue;
-        blend_nodes(found, place_on(there, point), weight, false, made_of);
-        return;
+        if (lookup.is_open(place_on(there, eye), lookup.centroid(found))) return found;
     }
+    return kNoPatch;
 }
 
 }  // namespace hemirad

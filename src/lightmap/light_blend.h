@@ -32,6 +32,15 @@ class LightBlend {
     /// Weights are positive; never empty.
     void blend(std::uint32_t patch, const glm::dvec2& place, std::vector<PatchWeight>& made_of);
 
+    /// Who has the place where it lies beyond the patch's surface: of the plane's other surfaces, a
+    /// patch that nothing parts from this one; kNoPatch where there is none.
+    std::uint32_t beyond(std::uint32_t patch, const glm::dvec2& place) const;
+
+    /// Whether nothing stands on the surface on the straight way.
+    bool is_open(std::uint32_t surface, const glm::dvec2& from, const glm::dvec2& to) const {
+        return lookups_[surface].is_open(from, to);
+    }
+
   private:
     /// A cell of a surface's grid, of a patch's own size.
     struct Node {

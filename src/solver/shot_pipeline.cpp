@@ -134,6 +134,17 @@ std::vector<std::string> kernel_names(FormFactorMode mode) {
     return names;
 }
 
+std::vector<std::string> gather_kernel_names(FormFactorMode mode) {
+    std::vector<std::string> names = kernel_names(mode);
+    std::erase_if(names, [](const std::string& name) {
+        return name == "aim_hemisphere" || name == "correct_near_pairs" ||
+               name == "update_radiosity" || name == "update_unshot" || name == "receive_flux" ||
+               name == "choose_shooter";
+    });
+    names.insert(names.end(), {"aim_points", "gather_irradiance", "add_up_irradiance"});
+    return names;
+}
+
 std::vector<std::string> launched_kernels(FormFactorMode mode) {
     std::vector<std::string> names = kernel_names(mode);
     std::erase_if(names, [](const std::string& name) {
@@ -275,7 +286,7 @@ void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSet
     const std::string options =
         build_options(array_, resolution_, corner_count, band_count_, two_levels_, settings);
     std::string source;
-    const auto names = kernel_names(mode_);
+    const auto names = settings.gathers ? gather_kernel_names(mode_) : kernel_names(mode_);
     for (const auto& name : names) source += kernel_source(name, settings.kernels_dir);
     kernels_ = mp1map::build_kernels(device, names, source, options);
     build_seconds_ =
@@ -431,6 +442,33 @@ void ShotPipeline::choose_shooter() {
                band_weight_, tolerance_, std::int32_t(disk_proxels_), proxel_count_,
                std::int32_t(stride_), escaped_, shot_flux_, std::int32_t(row_capacity_), row_of_,
                row_escaped_, std::int32_t(shots_of_.size() > 0), shots_of_);
+}
+
+void ShotPipeline::aim_points(std::uint32_t first, std::uint32_t end) {
+    acu_.issue(kernel("aim_points"), {member_count(), 1}, shot_, points_, std::int32_t(first),
+               std::int32_t(end));
+}
+
+void ShotPipeline::gather_irradiance() {
+    acu_.issue(kernel("gather_irradiance"), salvo_stack_grid(), shot_, proxel_count_,
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), radiosity_,
+               std::int32_t(gathered_bands()), block_irradiance_);
+}
+
+void ShotPipeline::add_up_irradiance() {
+    acu_.issue(kernel("add_up_irradiance"), {std::size_t{salvo_} * gathered_bands(), kReducePes},
+               shot_, block_irradiance_, std::int32_t(stride_ / kReduceBlock),
+               std::int32_t(gathered_bands()), proxel_count_, std::int32_t(stride_), gathered_);
+}
+
+void ShotPipeline::load_radiosity(const std::vector<float>& radiosity) {
+    radiosity_ = acu_.plural(radiosity);
+    block_irradiance_ = acu_.plural<float>(salvo_ * radiosity.size() / kReduceBlock);
+}
+
+void ShotPipeline::load_points(const std::vector<device::GatherPoint>& points) {
+    points_ = acu_.plural(points);
+    gathered_ = acu_.plural<float>(points.size() * gathered_bands());
 }
 
 device::Shot ShotPipeline::shot() {

@@ -55,6 +55,9 @@ struct PipelineSettings {
     bool count_shots = false;     ///< of each shooter, for shots_of()
     bool count_activity = false;  ///< activity() after each projection
     bool keep_owners = false;     ///< for tests: owners() after each projection
+    /// Looks from points, aim_points() to add_up_irradiance(), and not from shooters, which gets
+    /// other kernels compiled.
+    bool gathers = false;
 };
 
 /// PEs of the array that runs choose_shooter alone, and of those that close a station's form
@@ -104,6 +107,17 @@ class ShotPipeline {
     void count_areas();
     void update_radiosity();
     void update_unshot();
+
+    /// A salvo of the final gather's points, `first` and on of those below `end`.
+    void aim_points(std::uint32_t first, std::uint32_t end);
+    void gather_irradiance();
+    void add_up_irradiance();
+
+    /// What patches send to points, [band * stride() + patch].
+    void load_radiosity(const std::vector<float>& radiosity);
+    void load_points(const std::vector<device::GatherPoint>& points);
+    /// Waits; [point * bands + band] of the points that were loaded last.
+    std::vector<float> gathered() { return acu_.unload(gathered_); }
 
     /// Waits; how far the device has come: the first shooter of the salvo or, of those whose lists
     /// are full, the one with the longest.
@@ -165,6 +179,9 @@ class ShotPipeline {
     std::vector<T> projected(const mp1map::Plural<T>& plural);  // what is set up of [pe][slot]
     // Those that shoot and those that look ahead, as MEMBERS in progress.clh.
     std::uint32_t member_count() const { return salvo_ == 1 ? 1 : 2 * salvo_; }
+    std::uint32_t gathered_bands() const {
+        return static_cast<std::uint32_t>(radiosity_.size() / stride_);
+    }
     mp1map::Grid stack_grid() const;  // one array's stacks
     mp1map::Grid salvo_stack_grid() const;
     mp1map::Grid salvo_tile_grid() const;
@@ -203,12 +220,17 @@ class ShotPipeline {
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
     mp1map::Plural<std::int32_t> row_of_;  // [shooter] its row + 1; 0: it has none
     mp1map::Plural<float> rows_, row_escaped_;
+    mp1map::Plural<device::GatherPoint> points_;
+    mp1map::Plural<float> radiosity_, block_irradiance_, gathered_;
     mp1map::Plural<std::uint32_t> activity_, shots_of_;
     mp1map::Plural<device::BlockSummary> summaries_;
 };
 
 /// The files of kernels/ that a pipeline is made of, in the order of a shot.
 std::vector<std::string> kernel_names(FormFactorMode mode);
+
+/// The same of a final gather.
+std::vector<std::string> gather_kernel_names(FormFactorMode mode);
 
 /// Those of them that a shot of one level launches, unless they are to run apart.
 std::vector<std::string> launched_kernels(FormFactorMode mode);

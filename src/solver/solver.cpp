@@ -172,13 +172,17 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
 
 // The inner loops of sec. 1.5.4, over the levels of the stacks and their patches, run inside the
 // kernels.
-void project_hemisphere(ShotPipeline& pipeline) {
-    pipeline.aim_hemisphere();
+void project_aimed(ShotPipeline& pipeline) {
     pipeline.prepare_patches();
     pipeline.prefix_sum();
     pipeline.bin_areas();
     pipeline.project_patches();
     if (pipeline.mode() == FormFactorMode::analytic) pipeline.estimate_form_factors();
+}
+
+void project_hemisphere(ShotPipeline& pipeline) {
+    pipeline.aim_hemisphere();
+    project_aimed(pipeline);
 }
 
 void project_shooter(ShotPipeline& pipeline, std::uint32_t patch) {

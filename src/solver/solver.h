@@ -68,6 +68,9 @@ struct Progress {
     double seconds = 0;  ///< since solve() began
 };
 
+/// What the hemispheres see at which the pipeline is aimed is counted.
+void project_aimed(ShotPipeline& pipeline);
+
 /// What the next of the shooter's hemispheres sees is counted.
 void project_hemisphere(ShotPipeline& pipeline);
 

@@ -404,8 +404,8 @@ class Report(CommandLine):
                 "scene": ("patches", "elements", "bands", "closed"),
                 "device": ("name", "compute_units", "pe", "lanes"),
                 "closure": ("min", "max"),
-                "seconds": ("total", "build_kernels", "solve", "lightmap", "per_shot_median",
-                            "per_stage"),
+                "seconds": ("total", "build_kernels", "solve", "gather", "lightmap",
+                            "per_shot_median", "per_stage"),
         }.items():
             for member in members:
                 self.assertIn(member, report[key])

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""`hemirad solve --gather`: options, report, layers and the glTF's picture. HEMIRAD names the
+binary."""
+import json
+import unittest
+
+from cli_test import CommandLine
+from exr import Exr
+from exr_layers_test import BOX, FLOAT, MATERIALS
+
+QUICK = ("--resolution", "64", "--patch-size", "0.5", "--quality", "draft", "--texel-size", "0.125")
+GATHER = ("--gather", "64")
+
+
+class Gather(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.write("scene.mtl", MATERIALS)
+        self.write("scene.obj", BOX.replace("{left}", "left").replace("{right}", "right"))
+
+    def run_to(self, output, *arguments):
+        self.assert_done(self.run_hemirad("solve", "scene.obj", "-o", output, *QUICK, *arguments))
+
+    def channels(self, *arguments):
+        self.run_to("a.exr", *arguments)
+        return Exr(self.folder / "a.exr").channels()
+
+    def report(self, *arguments):
+        self.run_to("a.exr", "--report", "a.json", *arguments)
+        return json.loads((self.folder / "a.json").read_text())
+
+    def test_the_report_counts_texels_and_seconds(self):
+        every = self.report(*GATHER, "--gather-error", "0")
+        some = self.report(*GATHER, "--gather-error", "0.3")
+        none = self.report()
+
+        self.assertEqual(0, every["gather"]["texels_interpolated"])
+        self.assertGreater(some["gather"]["texels_interpolated"], 0)
+        self.assertEqual(every["gather"]["texels_gathered"],
+                         sum(some["gather"].values()))
+        self.assertGreater(every["seconds"]["gather"], 0)
+        self.assertEqual(64, every["settings"]["gather"])
+        self.assertEqual(0, every["settings"]["gather_error"])
+        self.assertIsNone(none["gather"])
+        self.assertEqual(0, none["seconds"]["gather"])
+        self.assertNotIn("gather", none["settings"])
+
+    def test_lights_and_direct_and_indirect_light_add_up_to_what_is_gathered(self):
+        for quantity in ("irradiance", "radiosity"):
+            with self.subTest(quantity=quantity):
+                channels = self.channels(*GATHER, "--gather-error", "0", "--quantity", quantity,
+                                         "--lights", "separate", "--layers", "direct,indirect")
+                for parts in (("light.left", "light.right"), ("direct", "indirect")):
+                    for band in "RGB":
+                        split = [channels[f"{part}.{band}"] for part in parts]
+                        for whole, *each in zip(channels[band], *split):
+                            self.assertAlmostEqual(whole, sum(each), delta=4 * FLOAT * whole)
+                self.assertGreater(max(channels["direct.G"]), 0)
+
+    def test_gathered_light_is_near_to_that_of_the_patches_but_is_not_the_same(self):
+        coarse = self.channels()
+        fine = self.channels(*GATHER)
+
+        mean = sum(coarse["G"]) / len(coarse["G"])
+        error = sum(abs(a - b) for a, b in zip(coarse["G"], fine["G"])) / len(coarse["G"])
+        self.assertGreater(error, 1e-4 * mean)
+        self.assertLess(error, 0.2 * mean)
+        self.assertEqual(coarse["coverage"], fine["coverage"])
+
+    def test_the_scene_for_engines_has_the_gathered_light(self):
+        pictures = []
+        for arguments in ((), GATHER):
+            self.run_to("a.glb", *arguments)
+            pictures.append((self.folder / "a.glb").read_bytes())
+
+        self.assertNotEqual(*pictures)
+
+    def test_bad_values(self):
+        for arguments, says in ((("--gather", "8"), "--gather"), (("--gather", "x"), "--gather"),
+                                ((*GATHER, "--gather-error", "-1"), "--gather-error"),
+                                ((*GATHER, "--gather-error", "1"), "--gather-error"),
+                                (("--gather-error", "0.1"), "--gather")):
+            with self.subTest(arguments=arguments):
+                self.assert_refused(self.run_hemirad("solve", "scene.obj", *arguments), "hemirad: ",
+                                    says=says)
+
+
+if __name__ == "__main__":
+    unittest.main()
