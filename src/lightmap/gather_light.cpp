@@ -57,14 +57,11 @@ class LightGatherer {
     }
 
     std::optional<GatheredLight> run() {
-        if (std::ranges::find(layout_.authored, atlas_, &AuthoredTriangle::atlas) !=
-                layout_.authored.end() &&
-            !add(authored_footprints(mesh_, layout_, atlas_, hidden_)))
-            return std::nullopt;
-        for (const Chart& chart : layout_.charts)
-            if (chart.atlas == atlas_ && !add(chart_footprints(mesh_, layout_, chart, hidden_)))
-                return std::nullopt;
-        if (!finish()) return std::nullopt;
+        bool goes_on = true;
+        for_each_footprints(mesh_, layout_, atlas_, hidden_, [&](const Footprints& footprints) {
+            goes_on = goes_on && add(footprints);
+        });
+        if (!goes_on || !finish()) return std::nullopt;
         return std::move(light_);
     }
 
