@@ -114,6 +114,8 @@ cl::Device divided(cl::Device device, std::uint32_t units) {
         CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
     std::vector<cl::Device> parts;
     device.createSubDevices(by_counts.data(), &parts);
+    // PoCL 3.1 would free it while one of its threads still releases the last event.
+    clRetainDevice(parts.front()());
     return parts.front();
 }
 
