@@ -23,13 +23,13 @@ bool goes_on(const Mesh& mesh, const Edge& edge, const Edge& other) {
            glm::dot(from.normal, to.normal) > 0;
 }
 
-std::vector<Edge> edges_of(const Mesh& mesh) {
+std::vector<Edge> edges_of(const Mesh& mesh, std::uint32_t corner_count) {
     std::vector<Edge> edges;
-    edges.reserve(4 * mesh.patches.size());
+    edges.reserve(std::size_t{corner_count} * mesh.patches.size());
     for (std::uint32_t patch = 0; patch < mesh.patches.size(); ++patch)
-        for (std::size_t k = 0; k < 4; ++k) {
+        for (std::uint32_t k = 0; k < corner_count; ++k) {
             const auto& corners = mesh.patches[patch].corners;
-            const std::uint32_t from = corners[k], to = corners[(k + 1) % 4];
+            const std::uint32_t from = corners[k], to = corners[(k + 1) % corner_count];
             if (from != to)
                 edges.push_back({std::min(from, to), std::max(from, to), patch,
                                  static_cast<std::uint8_t>(1u << k), from < to});
@@ -41,9 +41,9 @@ std::vector<Edge> edges_of(const Mesh& mesh) {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_rims(const Mesh& mesh) {
+std::vector<std::uint8_t> find_rims(const Mesh& mesh, std::uint32_t corner_count) {
     std::vector<std::uint8_t> rims(mesh.patches.size(), 0);
-    const auto edges = edges_of(mesh);
+    const auto edges = edges_of(mesh, corner_count);
     for (auto first = edges.begin(); first != edges.end();) {
         const auto last = std::find_if(first, edges.end(), [&](const Edge& edge) {
             return edge.low != first->low || edge.high != first->high;

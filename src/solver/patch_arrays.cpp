@@ -141,7 +141,7 @@ PatchArrays patch_arrays(const Mesh& mesh) {
     arrays.centre = 0.5 * extent.least + 0.5 * extent.most;
     arrays.scale = normalising_scale(extent);
     store_polygons(arrays, mesh, mesh.patches);
-    arrays.rims = find_rims(mesh);
+    arrays.rims = find_rims(mesh, arrays.corner_count);
     arrays.rims.resize(arrays.stride);
     return arrays;
 }

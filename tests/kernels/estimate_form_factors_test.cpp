@@ -95,6 +95,31 @@ TEST_P(EstimateFormFactors, WhatLiesBetweenProxelsIsHiddenUpToTheOutlineBeforeIt
     }
 }
 
+// Other kernels, of three edges; one shape, as they take long to compile.
+class EstimateFormFactorsOfTriangles : public EstimateFormFactors {};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, EstimateFormFactorsOfTriangles, testing::Values(shapes().front()),
+                         [](const auto& shape) { return name_of(shape.param); });
+
+// Each of the ceiling's edges in turns is the one that passes.
+TEST_P(EstimateFormFactorsOfTriangles, AnyEdgeOfATriangleMayBeThatOutline) {
+    const auto triangle = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+        return Polygon{{a, b, c, c}};
+    };
+    const auto speck = [&](double x) {
+        return triangle({2 * x, 0.3, 2}, {2 * x, 0.3 + 1e-5, 2}, {2 * x + 1e-5, 0.3, 2});
+    };
+    const glm::dvec3 a(0.01, -4, 1), b(0.01, 4, 1), c(4, 0, 1);
+    const auto floor = triangle({-1, -1, 0}, {2, -1, 0}, {-1, 2, 0});
+    for (const auto& ceiling : {triangle(a, b, c), triangle(c, a, b), triangle(b, c, a)}) {
+        const auto sums = seen_by_first({floor, ceiling, speck(0.01 - 1e-3), speck(0.01 + 1e-3)});
+
+        EXPECT_EQ(sums.visible[2], sums.unblocked[2]);
+        EXPECT_GT(sums.unblocked[3], 0);
+        EXPECT_EQ(sums.visible[3], 0);
+    }
+}
+
 TEST_P(EstimateFormFactors, TheCountsAreSpentAndAddedUp) {
     seen_by_first({kFloor, square({0, 0, 1}, kY, kX, 1), square({0.2, 0, 2}, kY, kX, 3)});
 

@@ -12,7 +12,7 @@ namespace {
 
 int rims_of(const Mesh& mesh) {
     int count = 0;
-    for (const auto bits : find_rims(mesh)) count += std::popcount(bits);
+    for (const auto bits : find_rims(mesh, 4)) count += std::popcount(bits);
     return count;
 }
 
@@ -45,6 +45,13 @@ TEST(FindRims, ItEndsWhereAnotherStandsOnEdge) {
     const std::vector<glm::dvec3> upright = {{3, 0, 0}, {3, 0, 2}, {3, 2, 2}, {3, 2, 0}};
 
     EXPECT_EQ(rims_of(meshed(sheet({kLeft, upright}), 1, Backfaces::cull)), 10 + 8);
+}
+
+TEST(FindRims, TrianglesHaveThreeEdgesWhereThereIsNothingElse) {
+    const Mesh mesh = meshed(sheet({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}), 9, Backfaces::cull);
+
+    EXPECT_EQ(find_rims(mesh, 3), std::vector<std::uint8_t>{0b0111});
+    EXPECT_EQ(find_rims(mesh, 4), std::vector<std::uint8_t>{0b1011});
 }
 
 // A sheet's front and back share edges, but face apart.
