@@ -76,7 +76,11 @@ std::string content_of(const fs::path& path) {
     if (!fs::is_regular_file(status)) refuse(path, "not a regular file");
     std::ifstream stream(path, std::ios::binary);
     if (!stream) refuse(path, std::generic_category().message(errno));
-    return {std::istreambuf_iterator<char>(stream), {}};
+    std::string content(kMagic.size(), '\0');  // whoever passes a film has it refused at once
+    stream.read(content.data(), static_cast<std::streamsize>(content.size()));
+    content.resize(static_cast<std::size_t>(stream.gcount()));
+    if (content == kMagic) content.append(std::istreambuf_iterator<char>(stream), {});
+    return content;
 }
 
 /// What lies between the line of the format and the checksum.

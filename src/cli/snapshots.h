@@ -8,14 +8,16 @@ namespace hemirad {
 /// When --snapshot-every asks for the next interim picture.
 class Snapshots {
   public:
-    explicit Snapshots(SnapshotInterval interval) : interval_(interval) {}
+    /// `shots`: made before, which a whole solve had its pictures of.
+    explicit Snapshots(SnapshotInterval interval, std::uint64_t shots = 0)
+        : interval_(interval), periods_(interval.shots == 0 ? 0 : shots / interval.shots) {}
 
     /// Whether one is due; if so, the next interval begins.
     bool due(const Progress& progress);
 
   private:
     SnapshotInterval interval_;
-    std::uint64_t periods_ = 0;  ///< that have passed, of shots or seconds
+    std::uint64_t periods_;  ///< that have passed, of shots or seconds
 };
 
 }  // namespace hemirad

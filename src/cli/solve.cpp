@@ -125,7 +125,11 @@ SolveIdentity checked_identity(const Work& work, const SolveOptions& options,
 /// Returns how many shots there were before.
 std::uint64_t resume(ProgressiveSolver& solver, const Work& work, const SolveOptions& options) {
     if (!options.resume) return 0;
-    solver.resume(work.checkpoint->state);
+    try {
+        solver.resume(work.checkpoint->state);
+    } catch (const InputError& fault) {
+        throw InputError(options.resume->string() + ": " + fault.what());
+    }
     const auto shots = work.checkpoint->state.shots;
     if (!options.quiet)
         std::cerr << printable(options.resume->string()) << ": goes on after "
@@ -147,7 +151,8 @@ void require_gather_memory(const Work& work, const SolveOptions& options,
 
 Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& options,
            const Interrupts& interrupts, Checkpoints& checkpoints, ShotClock& shot_clock) {
-    Snapshots snapshots(options.snapshots);
+    Snapshots snapshots(options.snapshots,
+                        options.resume ? work.checkpoint->state.shots : 0);
     ProgressDisplay display(progress_style(options.quiet, options.no_progress),
                             options.solver.tolerance);
     return solver.solve([&](const Progress& progress) {
@@ -293,6 +298,7 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
             return true;
         work.mesh = std::move(finer);
         require_memory(work, options, device.summary());
+        require_gather_memory(work, options, device.summary());
     }
     return true;
 }
@@ -305,6 +311,20 @@ void write_results(const Work& work, const SolveOptions& options, const Outcome&
     write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout, outcome.solution,
                        gathered);
     if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
+}
+
+/// Where it fails, the lightmap of the patches is written: the solve was the longer part.
+std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,
+                                                   const SolveOptions& options,
+                                                   const Outcome& outcome) {
+    const Work& work = solving.work;
+    try {
+        return gather_lightmaps(options, work.mesh, work.layout, outcome.solution, solving.device,
+                                solving.interrupts);
+    } catch (const std::exception&) {
+        write_results(work, options, outcome);
+        throw;
+    }
 }
 
 void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
@@ -365,8 +385,7 @@ int solve(SolveOptions options) {
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
     if (options.gather && !interrupts.requested())
-        outcome.gathered =
-            gather_lightmaps(options, work.mesh, work.layout, outcome.solution, device, interrupts);
+        outcome.gathered = gathered_or_saved(solving, options, outcome);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);

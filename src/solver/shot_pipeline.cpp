@@ -119,6 +119,10 @@ void require_addressable(const PatchArrays& patches, std::uint32_t salvo, std::u
                          " elements of a buffer are more than can be addressed");
 }
 
+bool is_finite(const std::vector<float>& values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
 }  // namespace
 
 std::vector<std::string> kernel_names(FormFactorMode mode) {
@@ -554,6 +558,9 @@ void ShotPipeline::set_state(const SolveState& state) {
         state.received_rest.size() != received_.size() || state.escaped.size() != escaped_.size() ||
         state.shots_of.size() != shots_of_.size())
         throw InputError("the state of another solve");
+    if (state.shots > std::numeric_limits<std::uint32_t>::max() || !is_finite(state.unshot) ||
+        !is_finite(state.received) || !is_finite(state.received_rest) || !is_finite(state.escaped))
+        throw InputError("no state that a solve comes to");
     auto salvo = std::vector(member_count(), first_shot());
     device::Shot& books = salvo.front();
     books.shots = static_cast<std::uint32_t>(state.shots);

@@ -21,6 +21,13 @@ TEST(Snapshots, AreDueOncePerIntervalOfShots) {
     EXPECT_FALSE(snapshots.due({.shots = 49}));
 }
 
+TEST(Snapshots, OfASolveThatGoesOnAreThoseOfAWholeOne) {
+    Snapshots snapshots({.shots = 10}, 23);
+
+    EXPECT_FALSE(snapshots.due({.shots = 24}));
+    EXPECT_TRUE(snapshots.due({.shots = 30}));
+}
+
 TEST(Snapshots, AreDueOncePerIntervalOfTime) {
     Snapshots snapshots({.seconds = 2});
 

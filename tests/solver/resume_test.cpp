@@ -192,5 +192,17 @@ TEST(Resumed, RefusesTheStateOfAnotherMesh) {
     EXPECT_THROW(solver.resume(other.state()), InputError);
 }
 
+TEST(Resume, RefusesWhatNoSolveComesTo) {
+    const auto device = mp1map::Device::open("");
+    ProgressiveSolver solver(box(), settings(64), device);
+    const SolveState state = solver.state();
+    SolveState dark = state, long_ago = state;
+    dark.received.front() = std::numeric_limits<float>::quiet_NaN();
+    long_ago.shots = std::uint64_t{1} << 32;
+
+    EXPECT_THROW(solver.resume(dark), InputError);
+    EXPECT_THROW(solver.resume(long_ago), InputError);
+}
+
 }  // namespace
 }  // namespace hemirad::test
