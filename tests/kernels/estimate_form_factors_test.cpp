@@ -133,7 +133,7 @@ TEST_P(EstimateFormFactors, TheCountsAreSpentAndAddedUp) {
 TEST_P(EstimateFormFactors, AClosedBoxAddsUpToOne) {
     const auto polygons = box({1, 0.7, 0.3}, 4);
 
-    const auto sums = seen_by_first(polygons, 128);
+    const auto sums = seen_by_first(polygons, 512);
 
     double sum = 0;
     for (const float factor : sums.visible) sum += factor;
