@@ -3,13 +3,12 @@
 import json
 import resource
 import signal
-import subprocess
 import sys
 import time
 import unittest
 
 import scenes
-from cli_test import HEMIRAD, CommandLine
+from cli_test import LONG, CommandLine
 from exr import Exr
 
 KEPT = ("shots", "ledger", "closure", "unshot_fraction", "lights", "error", "settings", "outputs")
@@ -159,20 +158,11 @@ class BadCheckpoints(Checkpoints):
 
 
 class Interruption(Checkpoints):
-    LONG = ("--resolution", "1024", "--patch-size", "0.02", "--tolerance", "1e-9", "-o", "a.exr",
-            "--checkpoint", "c.ckpt", "--checkpoint-every", "1", "--report", "r.json")
+    ARGUMENTS = (*LONG, "-o", "a.exr", "--checkpoint", "c.ckpt", "--checkpoint-every", "1",
+                 "--report", "r.json")
 
     def start(self):
-        """A solve that takes far longer than the test, and has left a checkpoint."""
-        process = subprocess.Popen([HEMIRAD, "solve", "scene.obj", *self.LONG], cwd=self.folder,
-                                   stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        deadline = time.monotonic() + 60
-        while not (self.folder / "c.ckpt").exists() and time.monotonic() < deadline:
-            time.sleep(0.02)
-        return process
+        return self.solve_until("c.ckpt", *self.ARGUMENTS)
 
     def test_writes_what_was_asked_for_and_goes_on(self):
         for stop in (signal.SIGINT, signal.SIGTERM):
@@ -182,7 +172,7 @@ class Interruption(Checkpoints):
             Exr(self.folder / "a.exr")
             shots = self.report()["shots"]
 
-            more = self.run_hemirad("solve", "scene.obj", *self.LONG, "--resume", "c.ckpt",
+            more = self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS, "--resume", "c.ckpt",
                                     "--max-shots", str(shots + 20))
 
             self.assert_done(more)
@@ -209,7 +199,7 @@ class Interruption(Checkpoints):
         process.send_signal(signal.SIGTERM)
         self.assertEqual(130, process.wait(60))
         self.assert_nothing_half_written()
-        self.assertEqual(0, self.run_hemirad("solve", "scene.obj", *self.LONG, "--resume", "c.ckpt",
+        self.assertEqual(0, self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS, "--resume", "c.ckpt",
                                              "--time-limit", "0.01").returncode)
 
     def test_killed_leaves_a_checkpoint_to_go_on_from(self):
@@ -217,7 +207,7 @@ class Interruption(Checkpoints):
         process.kill()
         process.wait(60)
         self.assertFalse((self.folder / "a.exr").exists())
-        self.assert_done(self.run_hemirad("solve", "scene.obj", *self.LONG, "--resume", "c.ckpt",
+        self.assert_done(self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS, "--resume", "c.ckpt",
                                           "--time-limit", "0.01"))
         self.assertGreater(self.report()["resumed_shots"], 0)
 

@@ -14,11 +14,24 @@ import scenes
 
 HEMIRAD = os.environ["HEMIRAD"]
 QUICK = ("--resolution", "64", "--patch-size", "0.25")
+LONG = ("--resolution", "1024", "--patch-size", "0.02", "--tolerance", "1e-9")
 
 
 class CommandLine(scenes.InFolder):
     def solve(self, *arguments, scene="scene.obj", **options):
         return self.run_hemirad("solve", scene, *QUICK, *arguments, **options)
+
+    def solve_until(self, appears, *arguments):
+        """A solve that takes far longer than the test, and has begun to leave a file."""
+        process = subprocess.Popen([HEMIRAD, "solve", "scene.obj", *arguments], cwd=self.folder,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not (self.folder / appears).exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        return process
 
     def assert_done(self, result):
         self.assertEqual(0, result.returncode, result.stderr)
@@ -461,18 +474,7 @@ class Report(CommandLine):
 
 class Interrupt(CommandLine):
     def start(self, *arguments):
-        """A solve that takes far longer than the test, and has begun to shoot."""
-        process = subprocess.Popen(
-            [HEMIRAD, "solve", "scene.obj", "--resolution", "1024", "--patch-size", "0.02",
-             "--tolerance", "1e-9", "--snapshot-every", "1", "-o", "a.exr", *arguments],
-            cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        deadline = time.monotonic() + 60
-        while not (self.folder / "a.exr").exists() and time.monotonic() < deadline:
-            time.sleep(0.02)
-        return process
+        return self.solve_until("a.exr", *LONG, "--snapshot-every", "1", "-o", "a.exr", *arguments)
 
     def test_snapshot_appears_while_the_solve_goes_on(self):
         process = self.start()
