@@ -97,8 +97,21 @@ void require_few_bands(const Work& work, const SolveOptions& options,
         (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 
+/// The solver will have given its own back by then.
+void require_gather_memory(const Work& work, const SolveOptions& options,
+                           const mp1map::DeviceSummary& device) {
+    if (!options.gather) return;
+    const auto needed = gather_bytes(work.mesh, gathered_bands(options, work.mesh),
+                                     gather_settings(options), device);
+    if (needed <= device.global_memory) return;
+    throw InputError(work.scene.file + ": --gather needs " + bytes_text(needed) + ", " +
+                     device.name + " has " + bytes_text(device.global_memory) +
+                     "; raise --patch-size or lower --gather");
+}
+
 void require_memory(const Work& work, const SolveOptions& options,
                     const mp1map::DeviceSummary& device) {
+    require_gather_memory(work, options, device);
     const auto resolution = options.target_error
                                 ? accuracy_at(first_step(*options.target_error)).resolution
                                 : options.solver.resolution;
@@ -135,18 +148,6 @@ std::uint64_t resume(ProgressiveSolver& solver, const Work& work, const SolveOpt
         std::cerr << printable(options.resume->string()) << ": goes on after "
                   << counted(shots, "shot") << '\n';
     return shots;
-}
-
-/// The solver has given its own back by then.
-void require_gather_memory(const Work& work, const SolveOptions& options,
-                           const mp1map::DeviceSummary& device) {
-    if (!options.gather) return;
-    const auto needed = gather_bytes(work.mesh, gathered_bands(options, work.mesh),
-                                     gather_settings(options), device);
-    if (needed <= device.global_memory) return;
-    throw InputError(work.scene.file + ": --gather needs " + bytes_text(needed) + ", " +
-                     device.name + " has " + bytes_text(device.global_memory) +
-                     "; raise --patch-size or lower --gather");
 }
 
 Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& options,
@@ -298,7 +299,6 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
             return true;
         work.mesh = std::move(finer);
         require_memory(work, options, device.summary());
-        require_gather_memory(work, options, device.summary());
     }
     return true;
 }
@@ -368,7 +368,6 @@ int solve(SolveOptions options) {
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
     require_memory(work, options, device.summary());
-    require_gather_memory(work, options, device.summary());
 
     const Interrupts interrupts;
     if (!split_where_light_varies(work, options, device, interrupts)) {
