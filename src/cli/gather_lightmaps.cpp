@@ -19,14 +19,6 @@ struct LightSent {
     Bands own, sent;
 };
 
-Bands own_emission(const Mesh& mesh, const LightGroups& lights, std::uint32_t light) {
-    Bands own(mesh.bands.size());
-    for (std::size_t band = 0; band < own.size(); ++band)
-        for (const Patch& patch : mesh.patches)
-            own[band].push_back(emitted_radiosity(mesh, lights, patch, {band, light}));
-    return own;
-}
-
 Bands without(const Bands& all, const Bands& part) {
     Bands rest = all;
     for (std::size_t band = 0; band < rest.size(); ++band)
@@ -42,12 +34,12 @@ Bands nothing(const Mesh& mesh) {
 /// Of the solution, then of its parts.
 std::vector<LightSent> sent_light(const Mesh& mesh, const Solution& solution, Lights apart) {
     const LightGroups lights = group_lights(mesh, apart);
-    const Bands emission = own_emission(mesh, lights, kEveryLight);
+    const Bands emission = emitted_radiosities(mesh);
     std::vector<LightSent> result{{emission, solution.radiosity}};
     std::uint32_t light = 0;
     for (const SolutionPart& part : solution.parts) {
         if (part.kind == SolutionPart::Kind::light)
-            result.push_back({own_emission(mesh, lights, light++), part.radiosity});
+            result.push_back({emitted_radiosities(mesh, lights, light++), part.radiosity});
         else if (part.kind == SolutionPart::Kind::direct)
             result.push_back({emission, emission});
         else

@@ -23,14 +23,6 @@ const Bands& bands_of(const auto& light, Quantity quantity) {
     return quantity == Quantity::irradiance ? light.irradiance : light.radiosity;
 }
 
-Bands emission_of(const Mesh& mesh) {
-    Bands emission(mesh.bands.size());
-    for (std::size_t band = 0; band < mesh.bands.size(); ++band)
-        for (const Patch& patch : mesh.patches)
-            emission[band].push_back(emitted_radiosity(mesh, patch, band));
-    return emission;
-}
-
 std::vector<PatchLayer> part_layers(const Solution& solution, Quantity quantity) {
     std::vector<PatchLayer> layers;
     const auto names = part_names(solution);
@@ -88,7 +80,7 @@ Solution nothing_of(const SolveOptions& options, const Mesh& mesh) {
 Lightmap layered_lightmap(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
                           std::uint32_t atlas, const Solution& solution, const Solution* error,
                           const GatheredLightmaps* gathered) {
-    const Bands emission = options.layers.emission ? emission_of(mesh) : Bands{};
+    const Bands emission = options.layers.emission ? emitted_radiosities(mesh) : Bands{};
     auto layers = part_layers(solution, options.quantity);
     if (options.layers.emission)
         layers.push_back({"emission", "own radiosity, pi times the radiance, W/m^2", &emission});

@@ -145,6 +145,15 @@ double emitted_radiosity(const Mesh& mesh, const LightGroups& lights, const Patc
     return emitted_radiosity(mesh, patch, solved.band);
 }
 
+std::vector<std::vector<double>> emitted_radiosities(const Mesh& mesh, const LightGroups& lights,
+                                                     std::uint32_t light) {
+    std::vector<std::vector<double>> emitted(mesh.bands.size());
+    for (std::size_t band = 0; band < emitted.size(); ++band)
+        for (const Patch& patch : mesh.patches)
+            emitted[band].push_back(emitted_radiosity(mesh, lights, patch, {band, light}));
+    return emitted;
+}
+
 float reflectance(const Mesh& mesh, const Patch& patch, std::size_t band) {
     return static_cast<float>(material_of(mesh, patch).reflectance[band]);
 }

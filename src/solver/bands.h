@@ -62,6 +62,11 @@ double emitted_radiosity(const Mesh& mesh, const Patch& patch, std::size_t band)
 double emitted_radiosity(const Mesh& mesh, const LightGroups& lights, const Patch& patch,
                          const SolvedBand& solved);
 
+/// [band][patch] the same of all patches, of one light alone where one is named.
+std::vector<std::vector<double>> emitted_radiosities(const Mesh& mesh,
+                                                     const LightGroups& lights = {},
+                                                     std::uint32_t light = kEveryLight);
+
 /// Reflectance of a patch as the device holds it.
 float reflectance(const Mesh& mesh, const Patch& patch, std::size_t band);
 

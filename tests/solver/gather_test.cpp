@@ -39,17 +39,9 @@ GatheredLight gathered_light(const Mesh& mesh, const Bands& radiosity, const Ban
                          });
 }
 
-Bands own_emission(const Mesh& mesh) {
-    Bands emission(mesh.bands.size());
-    for (std::size_t band = 0; band < emission.size(); ++band)
-        for (const Patch& patch : mesh.patches)
-            emission[band].push_back(emitted_radiosity(mesh, patch, band));
-    return emission;
-}
-
 /// As if 5 W/m^2 fell on every patch.
 Bands roughly_lit(const Mesh& mesh) {
-    Bands radiosity = own_emission(mesh);
+    Bands radiosity = emitted_radiosities(mesh);
     for (std::size_t band = 0; band < radiosity.size(); ++band)
         for (std::size_t i = 0; i < mesh.patches.size(); ++i)
             radiosity[band][i] += 5 * reflectance(mesh, mesh.patches[i], band);
@@ -92,7 +84,7 @@ TEST(Gather, AFloorUnderALampHasTheClosedFormInEveryTexel) {
     const auto positions = position_layer(mesh, layout), normals = normal_layer(mesh, layout);
     const std::vector<glm::dvec3> lamp{{1.5, 1, 1.3}, {1.5, 2, 1.3}, {2.5, 2, 1.3}, {2.5, 1, 1.3}};
 
-    const Bands emission = own_emission(mesh);
+    const Bands emission = emitted_radiosities(mesh);
 
     const auto light = gathered_light(mesh, emission, emission, layout, through(), 0);
 
