@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "solver/solved.h"
 #include "solver/support.h"
 
 // A shooter's row of form factors is kept, and its later shots go by it.
@@ -8,12 +9,6 @@ namespace {
 
 constexpr std::uint64_t kAnyBytes = std::uint64_t{1} << 30;
 constexpr std::uint64_t kLeastEntries = 65536;  // of the lists
-
-struct Solved {
-    Solution solution;
-    Closure closure;
-    std::uint64_t repeated_shots;
-};
 
 Solved solved(const Mesh& mesh, SolverSettings how, std::uint64_t row_bytes) {
     how.row_bytes = row_bytes;
@@ -35,18 +30,6 @@ std::uint64_t list_entries(const Mesh& mesh, const SolverSettings& how) {
     Shooters shooters(mesh, how.resolution, 1, how.pe_array);
     shooters.proxel_counts(0);
     return shooters.pipeline().shot().bin_entries;
-}
-
-void expect_equal(const Solved& a, const Solved& b) {
-    EXPECT_EQ(a.solution.shots, b.solution.shots);
-    EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
-    EXPECT_EQ(a.solution.unshot_fraction, b.solution.unshot_fraction);
-    EXPECT_EQ(a.closure.least, b.closure.least);
-    EXPECT_EQ(a.closure.most, b.closure.most);
-    for (std::size_t band = 0; band < a.solution.ledger.size(); ++band) {
-        EXPECT_EQ(a.solution.ledger[band].escaped, b.solution.ledger[band].escaped);
-        EXPECT_EQ(a.solution.ledger[band].unshot, b.solution.ledger[band].unshot);
-    }
 }
 
 mp1map::DeviceSummary roomy_device() {

@@ -1,20 +1,16 @@
 #include <gtest/gtest.h>
 
 #include "errors.h"
+#include "solver/solved.h"
 #include "solver/support.h"
 
 // A solve that goes on from a state of another ends as if it had never stopped.
 namespace hemirad::test {
 namespace {
 
-struct Solved {
-    Solution solution;
-    Closure closure;
-};
-
 Solved ended(ProgressiveSolver& solver) {
     solver.solve(go_on);
-    return {solver.solution(), solver.closure()};
+    return {solver.solution(), solver.closure(), solver.repeated_shots()};
 }
 
 Solved solved(const Mesh& mesh, const SolverSettings& how) {
@@ -46,20 +42,6 @@ std::vector<SolveState> states_on_the_way(const Mesh& mesh, SolverSettings how,
     });
     states.push_back(solver.state());
     return states;
-}
-
-void expect_equal(const Solved& a, const Solved& b) {
-    EXPECT_EQ(a.solution.shots, b.solution.shots);
-    EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
-    EXPECT_EQ(a.solution.shots_of, b.solution.shots_of);
-    EXPECT_EQ(a.solution.unshot_fraction, b.solution.unshot_fraction);
-    EXPECT_EQ(a.solution.converged, b.solution.converged);
-    EXPECT_EQ(a.closure.least, b.closure.least);
-    EXPECT_EQ(a.closure.most, b.closure.most);
-    for (std::size_t band = 0; band < a.solution.ledger.size(); ++band) {
-        EXPECT_EQ(a.solution.ledger[band].escaped, b.solution.ledger[band].escaped);
-        EXPECT_EQ(a.solution.ledger[band].unshot, b.solution.ledger[band].unshot);
-    }
 }
 
 void expect_same_end_from_everywhere(const Mesh& mesh, SolverSettings how, std::uint64_t spacing) {
