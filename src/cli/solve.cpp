@@ -111,15 +111,15 @@ void require_gather_memory(const Work& work, const SolveOptions& options,
 
 void require_memory(const Work& work, const SolveOptions& options,
                     const mp1map::DeviceSummary& device) {
-    require_gather_memory(work, options, device);
     const auto resolution = options.target_error
                                 ? accuracy_at(first_step(*options.target_error)).resolution
                                 : options.solver.resolution;
     const auto needed = device_bytes(work.mesh, resolution, options.solver, device);
-    if (needed <= device.global_memory) return;
-    throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
-                     " has " + bytes_text(device.global_memory) +
-                     "; raise --patch-size or lower --resolution");
+    if (needed > device.global_memory)
+        throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
+                         " has " + bytes_text(device.global_memory) +
+                         "; raise --patch-size or lower --resolution");
+    require_gather_memory(work, options, device);
 }
 
 /// Where the options ask for none, nothing.
@@ -152,8 +152,7 @@ std::uint64_t resume(ProgressiveSolver& solver, const Work& work, const SolveOpt
 
 Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& options,
            const Interrupts& interrupts, Checkpoints& checkpoints, ShotClock& shot_clock) {
-    Snapshots snapshots(options.snapshots,
-                        options.resume ? work.checkpoint->state.shots : 0);
+    Snapshots snapshots(options.snapshots, options.resume ? work.checkpoint->state.shots : 0);
     ProgressDisplay display(progress_style(options.quiet, options.no_progress),
                             options.solver.tolerance);
     return solver.solve([&](const Progress& progress) {

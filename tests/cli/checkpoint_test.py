@@ -199,7 +199,8 @@ class Interruption(Checkpoints):
         process.send_signal(signal.SIGTERM)
         self.assertEqual(130, process.wait(60))
         self.assert_nothing_half_written()
-        self.assertEqual(0, self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS, "--resume", "c.ckpt",
+        self.assertEqual(0, self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS,
+                                             "--resume", "c.ckpt",
                                              "--time-limit", "0.01").returncode)
 
     def test_killed_leaves_a_checkpoint_to_go_on_from(self):
@@ -207,8 +208,8 @@ class Interruption(Checkpoints):
         process.kill()
         process.wait(60)
         self.assertFalse((self.folder / "a.exr").exists())
-        self.assert_done(self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS, "--resume", "c.ckpt",
-                                          "--time-limit", "0.01"))
+        self.assert_done(self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS,
+                                          "--resume", "c.ckpt", "--time-limit", "0.01"))
         self.assertGreater(self.report()["resumed_shots"], 0)
 
 
