@@ -103,7 +103,8 @@ TEST_P(Resume, GoesOnAfterALimitOfShots) {
         cut_short += state.shots < most;
 
         expect_equal(resumed(mesh, how(), state), whole);
-        expect_equal(resumed(mesh, limited, state), {solver.solution(), solver.closure()});
+        expect_equal(resumed(mesh, limited, state),
+                     {solver.solution(), solver.closure(), solver.repeated_shots()});
     }
     EXPECT_EQ(cut_short > 0, how().salvo > 1);
 }
