@@ -9,7 +9,7 @@
 
 #include "errors.h"
 
-namespace hemirad {
+namespace hemirad::checkpoint_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,4 +173,4 @@ TEST(CheckpointOf, AnotherDeviceIsDoubted) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::checkpoint_file_test

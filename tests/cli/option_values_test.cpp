@@ -6,7 +6,7 @@
 
 #include "errors.h"
 
-namespace hemirad {
+namespace hemirad::option_values_test {
 namespace {
 
 OptionValue value(std::string_view text) { return {"--size", text}; }
@@ -60,4 +60,4 @@ TEST(OptionValues, ComplaintsNameOptionValueAndWhatIsAccepted) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::option_values_test

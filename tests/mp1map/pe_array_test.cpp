@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mp1map {
+namespace mp1map::pe_array_test {
 namespace {
 
 DeviceSummary cpu(std::uint32_t native_lanes = 16) {
@@ -144,4 +144,4 @@ TEST(PeArray, ATileBeyondTheLocalMemoryIsRefused) {
 }
 
 }  // namespace
-}  // namespace mp1map
+}  // namespace mp1map::pe_array_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hemirad {
+namespace hemirad::printable_test {
 namespace {
 
 TEST(Printable, LeavesTextAsItIs) {
@@ -27,4 +27,4 @@ TEST(Printable, EscapesWhatIsNoUtf8) {
 TEST(Printable, GoesOnAfterABadByte) { EXPECT_EQ(printable("\xe2o\xc3\xb6"), "\\xe2o\xc3\xb6"); }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::printable_test

@@ -9,7 +9,7 @@
 #include "scene/read_scene.h"
 #include "scene/scene_folder.h"
 
-namespace hemirad::test {
+namespace hemirad::test::read_gltf_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -762,4 +762,4 @@ TEST_F(ReadGltf, DoesNotReadBuffersFromTheWorkingFolder) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::read_gltf_test

@@ -7,7 +7,7 @@
 #include "scene/scenes_by_hand.h"
 #include "solver/support.h"
 
-namespace hemirad::test {
+namespace hemirad::test::find_rims_test {
 namespace {
 
 int rims_of(const Mesh& mesh) {
@@ -63,4 +63,4 @@ TEST(FindRims, TheBackIsNotASurfaceGoneOn) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::find_rims_test

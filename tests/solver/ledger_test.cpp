@@ -4,7 +4,7 @@
 
 // Energy is neither made nor lost: emitted = absorbed + escaped + unshot in every band, and no
 // proxel of a shot is without owner or with two.
-namespace hemirad::test {
+namespace hemirad::test::ledger_test {
 namespace {
 
 struct Case {
@@ -96,4 +96,4 @@ TEST(Ledger, AbsorbedFluxIsWhatThePatchesSayThemselves) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::ledger_test

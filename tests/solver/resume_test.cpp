@@ -5,7 +5,7 @@
 #include "solver/support.h"
 
 // A solve that goes on from a state of another ends as if it had never stopped.
-namespace hemirad::test {
+namespace hemirad::test::resume_test {
 namespace {
 
 Solved ended(ProgressiveSolver& solver) {
@@ -188,4 +188,4 @@ TEST(Resume, RefusesWhatNoSolveComesTo) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::resume_test

@@ -7,7 +7,7 @@
 
 // The lightmap is the same to the last bit whatever the PE array, its lanes, its tiles and the
 // device's compute units.
-namespace hemirad::test {
+namespace hemirad::test::same_bits_test {
 namespace {
 
 std::vector<Machine> machines() {
@@ -80,4 +80,4 @@ TEST(SameBits, OfGridCoordinatesWhateverThePowerOfTwo) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::same_bits_test

@@ -7,7 +7,7 @@
 #include "solver/support.h"
 
 // Every solve ends, at the tolerance or at a limit, and says which.
-namespace hemirad::test {
+namespace hemirad::test::stopping_test {
 namespace {
 
 /// A solver with its own copy of everything it needs.
@@ -272,4 +272,4 @@ TEST(Numbers, OfAFarAwaySceneAreRightOrAnError) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::stopping_test
