@@ -110,7 +110,8 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
 
 ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSettings& settings,
                           const mp1map::Device& device) {
-    const PatchArrays patches = patch_arrays(mesh);
+    const PatchArrays patches =
+        patch_arrays(mesh, settings.form_factor == FormFactorMode::analytic);
     const ShooterArrays shooters = shooter_arrays(mesh, patches);
     const std::uint32_t stride = mesh.shooters.empty() ? patches.stride : shooters.polygons.stride;
     return ShotPipeline(patches, patch_light(mesh, plan, stride),
