@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "cli/checkpoint_file.h"
@@ -224,7 +223,7 @@ Outcome solve_with(const Solving& solving, SolveOptions options, const SolverSet
 SolveOptions without_interim_files(SolveOptions options) {
     options.snapshots = {};
     options.checkpoint = options.resume = {};
-    options.solver.stop_every = 0;
+    options.solver.stop_every.clear();
     return options;
 }
 
@@ -410,7 +409,7 @@ void add_solve(CLI::App& app, Command& chosen) {
     add_solve_options(command, *options);
     on_chosen(command, [&chosen, options] {
         const auto checkpoint_shots = options->checkpoint ? options->checkpoint_every.shots : 0;
-        options->solver.stop_every = std::gcd(options->snapshots.shots, checkpoint_shots);
+        options->solver.stop_every = {options->snapshots.shots, checkpoint_shots};
         options->solver.timed = options->verbose || options->report.has_value();
         if (options->target_error) reject_with_target_error(*options);
         if (options->target_error)

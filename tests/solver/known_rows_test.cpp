@@ -93,7 +93,7 @@ TEST_P(KnownRows, GoOnOverPauses) {
     const Mesh mesh = meshed(scene_named("cornell.gltf"), 0.2);
     auto how = this->how();
     const auto whole = solved(mesh, how, kAnyBytes);
-    how.stop_every = 7;
+    how.stop_every = {7};
 
     expect_equal(solved(mesh, how, kAnyBytes), whole);
 }

@@ -53,7 +53,7 @@ TEST(Ledger, IsClosedInTheMiddleOfASolve) {
     const Mesh mesh = meshed(scene_named("cornell.gltf"), 0.11);
     const auto device = mp1map::Device::open("");
     auto how = settings(128);
-    how.stop_every = 7;
+    how.stop_every = {7};
     ProgressiveSolver solver(mesh, how, device);
 
     std::vector<double> absorbed;

@@ -31,7 +31,7 @@ Solved resumed(const Mesh& mesh, const SolverSettings& how, const SolveState& st
 std::vector<SolveState> states_on_the_way(const Mesh& mesh, SolverSettings how,
                                           std::uint64_t spacing) {
     constexpr std::uint64_t kFirst = 3;
-    how.stop_every = 1;
+    how.stop_every = {1};
     const auto device = mp1map::Device::open("");
     ProgressiveSolver solver(mesh, how, device);
     std::vector<SolveState> states;

@@ -121,7 +121,7 @@ TEST_P(Salvo, GoesOnOverPausesWithTheSameBits) {
     const Mesh mesh = box();
     auto how = this->how(8);
     const auto whole = solved(mesh, how).solution;
-    how.stop_every = 5;
+    how.stop_every = {5};
 
     expect_equal(solved(mesh, how).solution, whole);
 }

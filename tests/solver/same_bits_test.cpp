@@ -39,7 +39,7 @@ TEST(SameBits, WhateverTheIntervalsOfTheHost) {
 
     for (const std::uint64_t every : {1u, 3u, 50u}) {
         SolverSettings in_steps = how;
-        in_steps.stop_every = every;
+        in_steps.stop_every = {every};
         ProgressiveSolver solver(mesh, in_steps, device);
         while (solver.solve([](const Progress&) { return false; }) == Stop::interrupted) {
         }
