@@ -211,7 +211,7 @@ struct Solving {
     const Work& work;
     const mp1map::Device& device;
     const Interrupts& interrupts;
-    Stopwatch stopwatch = {};  ///< the time limit is that of all of them
+    Stopwatch stopwatch = {};  ///< the time limit is that of all of them and of the gather
 };
 
 Outcome solve_with(const Solving& solving, SolveOptions options, const SolverSettings& solver) {
@@ -316,9 +316,14 @@ std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,
                                                    const SolveOptions& options,
                                                    const Outcome& outcome) {
     const Work& work = solving.work;
+    const auto go_on = [&] {
+        return !solving.interrupts.requested() &&
+               solving.stopwatch.seconds() < options.solver.time_limit;
+    };
+    if (!go_on()) return {};
     try {
         return gather_lightmaps(options, work.mesh, work.layout, outcome.solution, solving.device,
-                                solving.interrupts);
+                                go_on);
     } catch (const std::exception&) {
         write_results(work, options, outcome);
         throw;
@@ -331,6 +336,14 @@ void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
         return;
     outcome.warnings.push_back("--target-error " + number_text(*options.target_error) +
                                (outcome.error ? ": not reached" : ": stopped before it was known"));
+    print_warnings(std::cerr, {outcome.warnings.back()});
+}
+
+void warn_of_missing_gather(const SolveOptions& options, Outcome& outcome) {
+    if (!options.gather || outcome.gathered) return;
+    outcome.warnings.push_back("--gather: stopped by --time-limit " +
+                               number_text(options.solver.time_limit) +
+                               "; the lightmap is that of the patches");
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
@@ -381,8 +394,8 @@ int solve(SolveOptions options) {
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
-    if (options.gather && !interrupts.requested())
-        outcome.gathered = gathered_or_saved(solving, options, outcome);
+    if (options.gather) outcome.gathered = gathered_or_saved(solving, options, outcome);
+    if (!interrupts.requested()) warn_of_missing_gather(options, outcome);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);
