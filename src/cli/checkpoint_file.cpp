@@ -160,8 +160,7 @@ void write_checkpoint(const fs::path& file, const Checkpoint& checkpoint) {
         Sha256 sum;
         for (const std::string_view part :
              {std::string_view(head), bytes_of(state.unshot), bytes_of(state.received),
-              bytes_of(state.received_rest), bytes_of(state.escaped),
-              bytes_of(state.shots_of)}) {
+              bytes_of(state.received_rest), bytes_of(state.escaped), bytes_of(state.shots_of)}) {
             out << part;
             sum.add(part);
         }
@@ -189,6 +188,7 @@ void require_no_other_file(const fs::path& file) {
     if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return;
     std::string start(kMagic.size(), '\0');
     std::ifstream stream(file, std::ios::binary);
+    if (!stream) refuse(file, std::generic_category().message(errno));
     if (stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic)
         return;
     throw InputError("hemirad: --checkpoint " + file.string() +
