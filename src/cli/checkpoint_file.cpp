@@ -194,6 +194,7 @@ void require_no_other_file(const fs::path& file) {
     if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return;
     std::string start(kMagic.size(), '\0');
     std::ifstream stream(file, std::ios::binary);
+    if (!stream) refuse(file, std::generic_category().message(errno));
     if (stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic)
         return;
     throw InputError("hemirad: --checkpoint " + file.string() +

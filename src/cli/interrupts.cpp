@@ -9,7 +9,7 @@
 namespace hemirad {
 namespace {
 
-constexpr std::array kSignals{SIGINT, SIGTERM};
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 
 // A signal handler reaches nothing but globals.
 volatile std::sig_atomic_t g_requested = 0;

@@ -13,6 +13,7 @@ namespace hemirad {
 namespace {
 
 constexpr std::uint32_t kPrefixPes = 64;  // of prefix_sum, an array a station
+static_assert(std::max(kPrefixPes, kReducePes) <= mp1map::kLeastWorkGroup);
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
 constexpr std::uint32_t kMostListEntries = std::numeric_limits<std::int32_t>::max();

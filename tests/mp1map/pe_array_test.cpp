@@ -59,6 +59,16 @@ TEST(PeArray, AGpuGetsManyPesOfOneLane) {
     EXPECT_EQ(fit_pe_array(gpu(), {}).description(), "32x8 PEs, 1 lane, tile 32x32");
 }
 
+TEST(PeArray, ADeviceOfSmallGroupsGetsFewerPes) {
+    auto small = gpu();
+    small.max_work_group = 64;
+    EXPECT_EQ(fit_pe_array(small, {}).description(), "32x2 PEs, 1 lane, tile 32x32");
+
+    PeArrayRequest request;
+    request.height = 16;
+    EXPECT_EQ(fit_pe_array(small, request).description(), "4x16 PEs, 1 lane, tile 32x32");
+}
+
 TEST(PeArray, WhatIsAskedForIsKept) {
     PeArrayRequest request;
     request.width = 32;
