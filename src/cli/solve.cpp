@@ -96,29 +96,11 @@ void require_few_bands(const Work& work, const SolveOptions& options,
         (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 
-/// The solver will have given its own back by then.
-void require_gather_memory(const Work& work, const SolveOptions& options,
-                           const mp1map::DeviceSummary& device) {
-    if (!options.gather) return;
-    const auto needed = gather_bytes(work.mesh, gathered_bands(options, work.mesh),
-                                     gather_settings(options), device);
-    if (needed <= device.global_memory) return;
-    throw InputError(work.scene.file + ": --gather needs " + bytes_text(needed) + ", " +
-                     device.name + " has " + bytes_text(device.global_memory) +
-                     "; raise --patch-size or lower --gather");
-}
-
-void require_memory(const Work& work, const SolveOptions& options,
-                    const mp1map::DeviceSummary& device) {
-    const auto resolution = options.target_error
-                                ? accuracy_at(first_step(*options.target_error)).resolution
-                                : options.solver.resolution;
-    const auto needed = device_bytes(work.mesh, resolution, options.solver, device);
-    if (needed > device.global_memory)
-        throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
-                         " has " + bytes_text(device.global_memory) +
-                         "; raise --patch-size or lower --resolution");
-    require_gather_memory(work, options, device);
+MemoryEstimate checked_memory(const Work& work, const SolveOptions& options,
+                              const mp1map::DeviceSummary& device) {
+    auto estimate = estimate_memory(work.mesh, work.layout, options, device);
+    require_memory(work.scene.file, estimate, options, device);
+    return estimate;
 }
 
 /// Where the options ask for none, nothing.
@@ -296,7 +278,7 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
             finer.shooter_count() == work.mesh.shooter_count())
             return true;
         work.mesh = std::move(finer);
-        require_memory(work, options, device.summary());
+        checked_memory(work, options, device.summary());
     }
     return true;
 }
@@ -378,19 +360,22 @@ int solve(SolveOptions options) {
     check_channels(options, work.mesh);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
-    require_memory(work, options, device.summary());
+    auto memory = checked_memory(work, options, device.summary());
+    if (!options.quiet) std::cerr << memory_text(memory) << '\n';
 
     const Interrupts interrupts;
     if (!split_where_light_varies(work, options, device, interrupts)) {
         if (options.resume) return stopped_before_resuming(options, interrupts);
         give_up_checkpoint(options);
     }
+    if (options.mesh.split_levels > 0) memory = checked_memory(work, options, device.summary());
     const Solving solving{work, device, interrupts};
     auto outcome = options.target_error ? solve_to_target(solving, options)
                                         : solve_and_estimate(solving, options);
     options.solver.resolution = outcome.accuracy.resolution;
     options.solver.shooter_samples = outcome.accuracy.shooter_samples;
     options.solver.sampling_error = outcome.accuracy.sampling_error;
+    outcome.memory = memory;
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
