@@ -39,12 +39,21 @@ int complain_of_the_unexpected(const std::exception& fault) {
     return complain("hemirad: " + std::string(fault.what()), hemirad::kWrongUse);
 }
 
-/// A limit of files' sizes is to be an error of the write, as a full disk is. Blocked, not ignored:
-/// a device's compiler (LLVM) handles the signal, and takes all handlers away, ours of SIGINT too.
-void let_large_files_fail() {
+bool is_ignored(int signal) {
+    struct sigaction action = {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// A limit of files' sizes is to be an error of the write, as a full disk is; and what was ignored
+/// when we started (nohup, a shell's background job) is to stay so. Blocked, not ignored: a
+/// device's compiler (LLVM) handles these signals, whether they were ignored or not, and takes all
+/// handlers away, ours of SIGINT too.
+void block_signals() {
     sigset_t signals;
     sigemptyset(&signals);
     sigaddset(&signals, SIGXFSZ);
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM})
+        if (is_ignored(signal)) sigaddset(&signals, signal);
     sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
@@ -82,7 +91,7 @@ int run_and_complain(int argc, const char* const* argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    let_large_files_fail();
+    block_signals();
     try {
         return run_and_complain(argc, argv);
     } catch (const std::bad_alloc&) {  // of the message itself

@@ -31,7 +31,7 @@ Interrupts::Interrupts() {
     action.sa_flags = SA_RESTART;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
         sigaction(kSignals[i], nullptr, &previous_[i]);
-        if (previous_[i].sa_handler == SIG_IGN) continue;  // nohup, a shell's background job
+        if (previous_[i].sa_handler == SIG_IGN) continue;
         sigaction(kSignals[i], &action, nullptr);
     }
 }

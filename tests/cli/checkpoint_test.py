@@ -182,8 +182,8 @@ class Interruption(Checkpoints):
             for name in ("a.exr", "c.ckpt", "r.json"):
                 (self.folder / name).unlink()
 
-    def test_a_terminal_that_is_closed_ends_no_solve_under_nohup(self):
-        before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    def test_ignored_from_the_beginning_stays_ignored(self):
+        before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
         try:
             process = self.start()
         finally:

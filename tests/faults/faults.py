@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import zlib
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 import scenes  # noqa: E402
@@ -94,7 +95,7 @@ def check_files(folder, before):
                 Exr(folder / name).channels()
             elif not is_whole(name, content):
                 raise Wrong(f"{name} is torn")
-        except (ValueError, AssertionError, IndexError) as fault:
+        except (ValueError, AssertionError, IndexError, zlib.error) as fault:
             raise Wrong(f"{name} is torn: {fault!r}") from fault
     if lost := set(before) - set(files(folder)):
         raise Wrong(f"{lost} are lost")
