@@ -612,7 +612,8 @@ std::string png_of(std::size_t width, std::size_t height) {
     };
     const std::string header = "IHDR" + big_endian(width) + big_endian(height) + "\x08\x02" +
                                std::string(3 + 4, '\0');  // methods and a checksum
-    return "data:image/png;base64," + base64("\x89PNG\r\n\x1a\n" + big_endian(13) + header);
+    return "data:image/png;base64," + base64("\x89PNG\r\n\x1a\n" + big_endian(13) + header +
+                                             big_endian(0) + "IDAT" + big_endian(0));
 }
 
 /// Nodes that show one mesh, which shows all its corners again and again.
