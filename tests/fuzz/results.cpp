@@ -56,7 +56,8 @@ void read_solved_bytes(std::string_view bytes) {
 }
 
 void read_option_bytes(std::string_view bytes) {
-    const OptionValue value{"--option", bytes};
+    constexpr std::size_t kLongest = 400;  // an argument is the user's own, and repeated whole
+    const OptionValue value{"--option", bytes.substr(0, kLongest)};
     answer([&] { whole_number(value, 1, 1000); });
     answer([&] { require(positive_number(value) > 0, "a number above 0"); });
     answer([&] { require(positive_or_infinite(value) > 0, "a number above 0, or inf"); });
