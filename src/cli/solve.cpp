@@ -41,6 +41,7 @@ struct Work {
     std::optional<Checkpoint> checkpoint;  ///< of --resume
     Mesh mesh;
     ChartLayout layout;
+    MemoryEstimate memory = {};
 };
 
 /// A glTF as output means both: engines read its PNG, measurements the EXR beside it.
@@ -96,11 +97,9 @@ void require_few_bands(const Work& work, const SolveOptions& options,
         (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 
-MemoryEstimate checked_memory(const Work& work, const SolveOptions& options,
-                              const mp1map::DeviceSummary& device) {
-    auto estimate = estimate_memory(work.mesh, work.layout, options, device);
-    require_memory(work.scene.file, estimate, options, device);
-    return estimate;
+void check_memory(Work& work, const SolveOptions& options, const mp1map::DeviceSummary& device) {
+    work.memory = estimate_memory(work.mesh, work.layout, options, device);
+    require_memory(work.scene.file, work.memory, options, device);
 }
 
 /// Where the options ask for none, nothing.
@@ -154,8 +153,10 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
                    const Interrupts& interrupts) {
     Checkpoints checkpoints(options, checked_identity(work, options, device.summary()));
     ProgressiveSolver solver(work.mesh, options.solver, device);
-    if (!options.quiet)
+    if (!options.quiet) {
         print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
+        std::cerr << memory_text(work.memory) << '\n';
+    }
     Outcome outcome;
     outcome.resumed_shots = resume(solver, work, options);
     const Stopwatch solving;
@@ -278,7 +279,7 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
             finer.shooter_count() == work.mesh.shooter_count())
             return true;
         work.mesh = std::move(finer);
-        checked_memory(work, options, device.summary());
+        check_memory(work, options, device.summary());
     }
     return true;
 }
@@ -360,22 +361,20 @@ int solve(SolveOptions options) {
     check_channels(options, work.mesh);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
-    auto memory = checked_memory(work, options, device.summary());
-    if (!options.quiet) std::cerr << memory_text(memory) << '\n';
+    check_memory(work, options, device.summary());
 
     const Interrupts interrupts;
     if (!split_where_light_varies(work, options, device, interrupts)) {
         if (options.resume) return stopped_before_resuming(options, interrupts);
         give_up_checkpoint(options);
     }
-    if (options.mesh.split_levels > 0) memory = checked_memory(work, options, device.summary());
     const Solving solving{work, device, interrupts};
     auto outcome = options.target_error ? solve_to_target(solving, options)
                                         : solve_and_estimate(solving, options);
     options.solver.resolution = outcome.accuracy.resolution;
     options.solver.shooter_samples = outcome.accuracy.shooter_samples;
     options.solver.sampling_error = outcome.accuracy.sampling_error;
-    outcome.memory = memory;
+    outcome.memory = work.memory;
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);

@@ -27,6 +27,15 @@ TEST(OptionValues, WholeNumbersIncludeBothLimits) {
     EXPECT_THROW(whole_number(value("8193"), 16, 8192), InputError);
 }
 
+TEST(OptionValues, BytesHaveUnitsOfTwoToTheTenth) {
+    EXPECT_EQ(byte_count(value("123")), 123u);
+    EXPECT_EQ(byte_count(value("1.5K")), 1536u);
+    EXPECT_EQ(byte_count(value("500M")), std::uint64_t{500} << 20);
+    EXPECT_EQ(byte_count(value("8G")), std::uint64_t{8} << 30);
+    for (const char* text : {"", "G", "0", "-1M", "1X", "nan", "1e40T"})
+        EXPECT_THROW(byte_count(value(text)), InputError) << text;
+}
+
 TEST(OptionValues, NumbersMayBeInfiniteOnlyWhereThatMeansSomething) {
     EXPECT_TRUE(std::isinf(positive_or_infinite(value("inf"))));
     EXPECT_THROW(positive_number(value("inf")), InputError);
