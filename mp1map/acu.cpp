@@ -20,20 +20,17 @@ Acu::Acu(const Device& device, bool timed)
       is_cpu_(device.summary().is_cpu),
       timed_(timed) {
     guarded("command queue", [&] {
-        queue_ =
-            cl::CommandQueue(device.context(), device.handle(),
-                             timed ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{});
+        // cl::CommandQueue calls a function of OpenCL 2.0, which drivers of 1.2 do not have.
+        cl_int error = CL_SUCCESS;
+        queue_ = cl::CommandQueue(clCreateCommandQueue(
+            device.context()(), device.handle()(),
+            timed ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{}, &error));
+        if (error != CL_SUCCESS) throw cl::Error(error, "clCreateCommandQueue");
     });
 }
 
 void Acu::fail(const std::string& name, const cl::Error& error) const {
-    const bool memory = error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-                        error.err() == CL_OUT_OF_RESOURCES ||
-                        error.err() == CL_OUT_OF_HOST_MEMORY ||
-                        error.err() == CL_INVALID_BUFFER_SIZE || error.err() == CL_MAP_FAILURE;
-    throw DeviceError(device_name_ + ": " + name + ": " + error.what() +
-                      " failed with OpenCL error " + std::to_string(error.err()) +
-                      (memory ? " (out of memory)" : ""));
+    throw DeviceError(device_name_ + ": " + name + ": " + failure_text(error));
 }
 
 cl::Buffer Acu::allocated(std::size_t bytes) {

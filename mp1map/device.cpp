@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <tuple>
 
 #include "mp1map/compile_cache.h"
 
@@ -29,6 +30,27 @@ std::string lower(std::string text) {
     return text;
 }
 
+// The version as a device gives it: "OpenCL 1.2 ...".
+bool is_older_than_1_2(const std::string& version) {
+    int major = 0, minor = 0;
+    const std::string_view begin = "OpenCL ";
+    if (!version.starts_with(begin)) return false;
+    const auto* const end = version.data() + version.size();
+    const auto parsed = std::from_chars(version.data() + begin.size(), end, major);
+    if (parsed.ptr < end) std::from_chars(parsed.ptr + 1, end, minor);
+    return std::tie(major, minor) < std::make_tuple(1, 2);
+}
+
+std::string what_lacks(const cl::Device& device, const DeviceSummary& summary) {
+    if (device.getInfo<CL_DEVICE_AVAILABLE>() == CL_FALSE) return "is not available";
+    if (device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() == CL_FALSE) return "has no compiler";
+    if (is_older_than_1_2(summary.version)) return "is of " + summary.version + "; it takes 1.2";
+    if (summary.max_work_group < kLeastWorkGroup)
+        return "takes " + std::to_string(summary.max_work_group) +
+               " work-items a group; it takes " + std::to_string(kLeastWorkGroup);
+    return {};
+}
+
 DeviceSummary summarise(const cl::Device& device, const std::string& platform, std::size_t index) {
     DeviceSummary summary;
     summary.index = index;
@@ -42,16 +64,20 @@ DeviceSummary summarise(const cl::Device& device, const std::string& platform, s
     summary.local_memory = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
     summary.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     summary.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    summary.lacks = what_lacks(device, summary);
     return summary;
 }
+
+constexpr cl_int kNoPlatform = -1001;  // cl_khr_icd: the loader knows of no driver
 
 std::vector<Found> find_devices() {
     provide_compile_cache();
     std::vector<cl::Platform> platforms;
     try {
         cl::Platform::get(&platforms);
-    } catch (const cl::Error&) {
-        return {};  // the loader says "no platform" by an error
+    } catch (const cl::Error& error) {
+        if (error.err() == kNoPlatform) return {};
+        throw;
     }
     std::vector<Found> found;
     for (const auto& platform : platforms) {
@@ -59,8 +85,9 @@ std::vector<Found> find_devices() {
         std::vector<cl::Device> devices;
         try {
             platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-        } catch (const cl::Error&) {
-            continue;  // a platform without a device says so by an error
+        } catch (const cl::Error& error) {
+            if (error.err() == CL_DEVICE_NOT_FOUND) continue;
+            throw;
         }
         for (const auto& device : devices)
             found.push_back({device, summarise(device, name, found.size())});
@@ -77,15 +104,19 @@ std::string names_of(const std::vector<Found>& found) {
 
 const Found& first_choice(const std::vector<Found>& found) {
     const auto pocl_cpu = [](const Found& one) {
-        return one.summary.is_cpu &&
+        return one.summary.lacks.empty() && one.summary.is_cpu &&
                lower(one.summary.platform).find("portable") != std::string::npos;
     };
-    const auto cpu = [](const Found& one) { return one.summary.is_cpu; };
+    const auto cpu = [](const Found& one) {
+        return one.summary.lacks.empty() && one.summary.is_cpu;
+    };
+    const auto any = [](const Found& one) { return one.summary.lacks.empty(); };
     if (const auto it = std::find_if(found.begin(), found.end(), pocl_cpu); it != found.end())
         return *it;
     if (const auto it = std::find_if(found.begin(), found.end(), cpu); it != found.end())
         return *it;
-    return found.front();
+    const auto it = std::find_if(found.begin(), found.end(), any);
+    return it != found.end() ? *it : found.front();
 }
 
 const Found& choose(const std::vector<Found>& found, const std::string& selector) {
@@ -119,7 +150,38 @@ cl::Device divided(cl::Device device, std::uint32_t units) {
     return parts.front();
 }
 
+std::string meaning(cl_int error) {
+    switch (error) {
+        case CL_DEVICE_NOT_AVAILABLE:
+            return " (device not available)";
+        case CL_COMPILER_NOT_AVAILABLE:
+            return " (no compiler)";
+        case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+        case CL_OUT_OF_HOST_MEMORY:
+        case CL_MAP_FAILURE:
+            return " (out of memory)";
+        case CL_OUT_OF_RESOURCES:
+            return " (out of resources)";
+        case CL_INVALID_BUFFER_SIZE:
+            return " (out of memory for one buffer)";
+        case CL_INVALID_WORK_GROUP_SIZE:
+            return " (work-group too large: lower --pe)";
+        default:
+            return "";
+    }
+}
+
 }  // namespace
+
+std::string failure_text(const cl::Error& error) {
+    return std::string(error.what()) + " failed with OpenCL error " + std::to_string(error.err()) +
+           meaning(error.err());
+}
+
+std::string failure_text(const std::exception& fault) {
+    const auto* const error = dynamic_cast<const cl::Error*>(&fault);
+    return error == nullptr ? "" : failure_text(*error);
+}
 
 std::vector<DeviceSummary> list_devices() {
     std::vector<DeviceSummary> summaries;
@@ -133,6 +195,7 @@ Device::Device(cl::Device device, DeviceSummary summary)
 Device Device::open(const std::string& selector, std::uint32_t compute_units) {
     const auto found = find_devices();
     auto [device, summary] = choose(found, selector);
+    if (!summary.lacks.empty()) throw DeviceError(summary.name + " " + summary.lacks);
     if (compute_units > summary.compute_units)
         throw NoSuchDevice("--compute-units " + std::to_string(compute_units) + ": " +
                            summary.name + " has " + std::to_string(summary.compute_units));
@@ -143,8 +206,7 @@ Device Device::open(const std::string& selector, std::uint32_t compute_units) {
         }
         return Device(device, summary);
     } catch (const cl::Error& error) {
-        throw DeviceError(summary.name + ": " + error.what() + " failed with OpenCL error " +
-                          std::to_string(error.err()));
+        throw DeviceError(summary.name + ": " + failure_text(error));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "mp1map/pe_array.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace mp1map {
 namespace {
@@ -22,6 +23,18 @@ std::uint32_t native_lanes(const DeviceSummary& device) {
 
 std::uint32_t rounded_up(std::uint32_t value, std::uint32_t step) {
     return (value + step - 1) / step * step;
+}
+
+// PEs in a row and in a column: what was asked for, the rest at most what a group takes.
+void set_pes(const DeviceSummary& device, const PeArrayRequest& request, PeArray& array) {
+    const std::uint32_t width = device.is_cpu ? kCpuTile / array.lanes : 32;
+    const std::uint32_t height = device.is_cpu ? 1 : 8;
+    const auto fitting = [&](std::uint32_t wanted, std::uint64_t others) {
+        const auto most = std::max<std::uint64_t>(device.max_work_group / others, 1);
+        return std::min<std::uint32_t>(wanted, std::bit_floor(std::min<std::uint64_t>(most, 1024)));
+    };
+    array.width = request.width != 0 ? request.width : fitting(width, std::max(request.height, 1u));
+    array.height = request.height != 0 ? request.height : fitting(height, array.width);
 }
 
 void check_lanes(std::uint32_t lanes) {
@@ -78,8 +91,7 @@ PeArray fit_pe_array(const DeviceSummary& device, const PeArrayRequest& request)
     array.broadcast = request.broadcast;
     array.lanes = request.lanes != 0 ? request.lanes : native_lanes(device);
     check_lanes(array.lanes);
-    array.width = request.width != 0 ? request.width : device.is_cpu ? kCpuTile / array.lanes : 32;
-    array.height = request.height != 0 ? request.height : device.is_cpu ? 1 : 8;
+    set_pes(device, request, array);
     const std::uint32_t tile = device.is_cpu ? kCpuTile : 32;
     check_work_group(device, array);
     array.tile_width =

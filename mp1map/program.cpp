@@ -11,16 +11,42 @@ std::string rounding_option(const Device& device) {
                : "";
 }
 
+std::string build_log(const cl::Program& program, const Device& device) {
+    try {
+        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
+    } catch (const cl::Error&) {
+        return {};
+    }
+}
+
+// Of a compiler's log, which begins with warnings.
+std::string first_error(const std::string& log) {
+    if (log.find_first_not_of(" \n") == std::string::npos) return "its compiler does not say why";
+    const auto word = log.find("error");
+    const auto at = word == std::string::npos ? log.find_first_not_of(" \n") : word;
+    const auto begin = log.rfind('\n', at) + 1;  // npos + 1 is the log's begin
+    return log.substr(begin, log.find('\n', at) - begin);
+}
+
+cl::Kernel kernel_of(const cl::Program& program, const std::string& name) {
+    try {
+        return cl::Kernel(program, name.c_str());
+    } catch (const cl::Error& error) {
+        throw DeviceError("kernel " + name + ": " + failure_text(error));
+    }
+}
+
 cl::Program built(const Device& device, const std::string& source, const std::string& options) {
     cl::Program program(device.context(), source);
-    try {
-        program.build(device.handle(),
-                      ("-cl-std=CL1.2" + rounding_option(device) + " " + options).c_str());
-    } catch (const cl::BuildError&) {
-        throw DeviceError("the kernels do not compile on " + device.summary().name + ":\n" +
-                          program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle()));
-    }
-    return program;
+    const auto all_options = "-cl-std=CL1.2" + rounding_option(device) + " " + options;
+    // cl::Program::build asks for the log where there is none, and then fails at that.
+    const cl_int error =
+        clBuildProgram(program(), 1, &device.handle()(), all_options.c_str(), nullptr, nullptr);
+    if (error == CL_SUCCESS) return program;
+    if (error != CL_BUILD_PROGRAM_FAILURE) throw cl::Error(error, "clBuildProgram");
+    const auto log = build_log(program, device);
+    throw DeviceError("the kernels do not compile on " + device.summary().name + ": " +
+                      first_error(log) + (log.empty() ? "" : "\n" + log));
 }
 
 }  // namespace
@@ -32,11 +58,10 @@ std::map<std::string, Kernel> build_kernels(const Device& device,
         const cl::Program program = built(device, source, options);
         std::map<std::string, Kernel> kernels;
         for (const auto& name : names)
-            kernels.emplace(name, Kernel{name, cl::Kernel(program, name.c_str())});
+            kernels.emplace(name, Kernel{name, kernel_of(program, name)});
         return kernels;
     } catch (const cl::Error& error) {
-        throw DeviceError(std::string("kernels: ") + error.what() + " failed with OpenCL error " +
-                          std::to_string(error.err()));
+        throw DeviceError(device.summary().name + ": kernels: " + failure_text(error));
     }
 }
 

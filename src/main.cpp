@@ -1,4 +1,5 @@
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -26,12 +27,33 @@ int complain_with_log(std::string_view fault) {
     return hemirad::kDeviceFailed;
 }
 
-/// A limit of files' sizes is to be an error of the write, as a full disk is. Blocked, not ignored:
-/// a device's compiler (LLVM) handles the signal, and takes all handlers away, ours of SIGINT too.
-void let_large_files_fail() {
+/// Asks for no memory.
+int complain_of_memory() {
+    std::fputs("hemirad: out of memory\n", stderr);
+    return hemirad::kWrongUse;
+}
+
+int complain_of_the_unexpected(const std::exception& fault) {
+    if (const auto device = mp1map::failure_text(fault); !device.empty())
+        return complain_with_log(device);
+    return complain("hemirad: " + std::string(fault.what()), hemirad::kWrongUse);
+}
+
+bool is_ignored(int signal) {
+    struct sigaction action = {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// A limit of files' sizes is to be an error of the write, as a full disk is; and what was ignored
+/// when we started (nohup, a shell's background job) is to stay so. Blocked, not ignored: a
+/// device's compiler (LLVM) handles these signals, whether they were ignored or not, and takes all
+/// handlers away, ours of SIGINT too.
+void block_signals() {
     sigset_t signals;
     sigemptyset(&signals);
     sigaddset(&signals, SIGXFSZ);
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM})
+        if (is_ignored(signal)) sigaddset(&signals, signal);
     sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
@@ -44,26 +66,35 @@ int run(int argc, const char* const* argv) {
     }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_and_complain(int argc, const char* const* argv) {
+    using namespace hemirad;
     using namespace std::string_literals;
-    let_large_files_fail();
     try {
         return run(argc, argv);
     } catch (const CLI::ParseError& fault) {
-        return complain("hemirad: "s + fault.what(), hemirad::kWrongUse);
-    } catch (const hemirad::InputError& fault) {
-        return complain(fault.what(), hemirad::kWrongUse);
-    } catch (const hemirad::OutputError& fault) {
-        return complain(fault.what(), hemirad::kNotWritten);
+        return complain("hemirad: "s + fault.what(), kWrongUse);
+    } catch (const InputError& fault) {
+        return complain(fault.what(), kWrongUse);
+    } catch (const OutputError& fault) {
+        return complain(fault.what(), kNotWritten);
     } catch (const mp1map::NoSuchDevice& fault) {
-        return complain("hemirad: "s + fault.what(), hemirad::kWrongUse);
+        return complain("hemirad: "s + fault.what(), kWrongUse);
     } catch (const mp1map::DeviceError& fault) {
         return complain_with_log(fault.what());
     } catch (const std::bad_alloc&) {
-        return complain("hemirad: out of memory", hemirad::kWrongUse);
+        return complain_of_memory();
     } catch (const std::exception& fault) {
-        return complain("hemirad: "s + fault.what(), hemirad::kWrongUse);
+        return complain_of_the_unexpected(fault);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    block_signals();
+    try {
+        return run_and_complain(argc, argv);
+    } catch (const std::bad_alloc&) {  // of the message itself
+        return complain_of_memory();
     }
 }

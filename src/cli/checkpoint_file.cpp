@@ -55,13 +55,19 @@ SolveIdentity identity_from(const Json& json) {
     return identity;
 }
 
+/// A device may call itself anything; JSON is UTF-8.
+constexpr auto kReplacing = Json::error_handler_t::replace;
+
+std::string as_kept(const std::string& text) {
+    return Json::parse(Json(text).dump(-1, ' ', false, kReplacing)).get<std::string>();
+}
+
 std::string head_of(const Checkpoint& checkpoint) {
     const Json json = {{"made_with", json_of(checkpoint.made_with)},
                        {"tolerance", checkpoint.tolerance},
                        {"state", json_of(checkpoint.state)}};
-    // A device may call itself anything; JSON is UTF-8.
     return std::string(kMagic) + std::string(kFormat) + "\n" +
-           json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+           json.dump(-1, ' ', false, kReplacing) + "\n";
 }
 
 template <class Number>
@@ -160,8 +166,7 @@ void write_checkpoint(const fs::path& file, const Checkpoint& checkpoint) {
         Sha256 sum;
         for (const std::string_view part :
              {std::string_view(head), bytes_of(state.unshot), bytes_of(state.received),
-              bytes_of(state.received_rest), bytes_of(state.escaped),
-              bytes_of(state.shots_of)}) {
+              bytes_of(state.received_rest), bytes_of(state.escaped), bytes_of(state.shots_of)}) {
             out << part;
             sum.add(part);
         }
@@ -189,6 +194,7 @@ void require_no_other_file(const fs::path& file) {
     if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return;
     std::string start(kMagic.size(), '\0');
     std::ifstream stream(file, std::ios::binary);
+    if (!stream) refuse(file, std::generic_category().message(errno));
     if (stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic)
         return;
     throw InputError("hemirad: --checkpoint " + file.string() +
@@ -209,7 +215,7 @@ void require_same_solve(const fs::path& file, const Checkpoint& checkpoint,
 std::optional<std::string> doubt(const fs::path& file, const Checkpoint& checkpoint,
                                  const SolveIdentity& solve) {
     const auto& made = checkpoint.made_with;
-    if (made.device == solve.device) return {};
+    if (made.device == as_kept(solve.device)) return {};
     return file.string() + ": made on " + made.device + ", not " + solve.device +
            ": the last bits may be other than those of a solve that never stopped";
 }

@@ -93,7 +93,7 @@ std::optional<GatheredLightmaps> gather_lightmaps(const SolveOptions& options, c
                                                   const ChartLayout& layout,
                                                   const Solution& solution,
                                                   const mp1map::Device& device,
-                                                  const Interrupts& interrupts) {
+                                                  const std::function<bool()>& go_on) {
     const Stopwatch stopwatch;
     Bands sent;
     for (const LightSent& light : sent_light(mesh, solution, options.solver.parts.lights))
@@ -108,7 +108,7 @@ std::optional<GatheredLightmaps> gather_lightmaps(const SolveOptions& options, c
             [&](std::span<const SurfacePoint> points, const TexelProgress& before) {
                 return gather.irradiance(points, [&](std::size_t done) {
                     display.show(std::min(before.known + done, before.all), before.all);
-                    return !interrupts.requested();
+                    return go_on();
                 });
             });
         if (!light) return std::nullopt;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
-#include "cli/interrupts.h"
 #include "cli/solve_options.h"
 #include "lightmap/chart_layout.h"
 #include "lightmap/gather_light.h"
@@ -31,12 +31,12 @@ GatherSettings gather_settings(const SolveOptions& options);
 /// How many bands are gathered at once.
 std::size_t gathered_bands(const SolveOptions& options, const Mesh& mesh);
 
-/// Nothing where it is interrupted.
+/// Nothing where `go_on`, asked several times a second, says no.
 std::optional<GatheredLightmaps> gather_lightmaps(const SolveOptions& options, const Mesh& mesh,
                                                   const ChartLayout& layout,
                                                   const Solution& solution,
                                                   const mp1map::Device& device,
-                                                  const Interrupts& interrupts);
+                                                  const std::function<bool()>& go_on);
 
 /// Takes the place of the first bands of an atlas, as many as are there and were gathered; as
 /// radiosity, what the patches reflect of it and emit.

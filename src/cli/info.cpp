@@ -21,13 +21,6 @@
 namespace hemirad {
 namespace {
 
-struct InfoOptions {
-    std::filesystem::path scene;
-    MeshSettings mesh;
-    std::uint32_t resolution = SolverSettings{}.resolution;
-    Lights lights = Lights::together;
-};
-
 // As options that give this mesh.
 std::string sizes_of(const MeshSettings& settings) {
     const auto patches = "--patch-size " + number_text(settings.patch_size);
@@ -127,21 +120,22 @@ void print_lights(std::ostream& out, const Mesh& mesh, Lights wanted) {
     if (names.size() > kInFull) out << "  and " << names.size() - kInFull << " more\n";
 }
 
-void print_memory(std::ostream& out, const Mesh& mesh, const InfoOptions& options) {
-    out << "memory       ";
+void print_memory(std::ostream& out, const Scene& scene, const Mesh& mesh, SolveOptions options) {
     if (mp1map::list_devices().empty()) {
-        out << "no device to estimate it for\n";
+        out << "memory       no device to estimate it for\n";
         return;
     }
-    const auto device = mp1map::Device::open("");
-    SolverSettings settings;
-    settings.parts.lights = options.lights;
-    out << bytes_text(device_bytes(mesh, options.resolution, settings, device.summary())) << " of "
-        << bytes_text(device.summary().global_memory) << " on " << printable(device.summary().name)
-        << " at --resolution " << options.resolution << '\n';
+    const auto device = mp1map::Device::open(options.device, options.compute_units);
+    const auto layout = lay_out_charts(scene, mesh, options.charts);
+    const auto limit = options.memory_limit.value_or(available_memory());
+    out << "device       " << printable(device.summary().name) << ", "
+        << bytes_text(device.summary().global_memory) << '\n'
+        << "memory       "
+        << memory_text(estimate_memory(mesh, layout, options, device.summary())).substr(7)
+        << "; free " << bytes_text(limit) << '\n';
 }
 
-int print_info(InfoOptions options, std::ostream& out) {
+int print_info(SolveOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
     const auto mesh = build_mesh(scene, options.mesh);
@@ -149,8 +143,8 @@ int print_info(InfoOptions options, std::ostream& out) {
     print_contents(out, scene, mesh, options.mesh);
     print_parts(out, mesh, options.mesh.backfaces);
     print_bands(out, mesh);
-    print_lights(out, mesh, options.lights);
-    print_memory(out, mesh, options);
+    print_lights(out, mesh, options.solver.parts.lights);
+    print_memory(out, scene, mesh, options);
     const auto warnings = warnings_of(scene, mesh);
     out << "warnings     " << warnings.size() << '\n';
     for (const auto& warning : warnings) out << "  " << printable(warning) << '\n';
@@ -162,13 +156,11 @@ int print_info(InfoOptions options, std::ostream& out) {
 void add_info(CLI::App& app, Command& chosen) {
     auto& command =
         add_command(app, "info", "what a scene holds and what the solver will therefore build");
-    const auto options = std::make_shared<InfoOptions>();
-    add_scene(command, options->scene);
-    add_mesh_options(command, options->mesh);
-    add_element_size(command, options->mesh);
-    add_resolution(command, options->resolution);
-    add_lights(command, options->lights);
+    const auto options = std::make_shared<SolveOptions>();
+    add_cost_options(command, *options);
     on_chosen(command, [&chosen, options] {
+        if (!options->target_error)
+            set_accuracy(options->solver, accuracy_at(static_cast<unsigned>(options->quality)));
         chosen = [options] { return print_info(*options, std::cout); };
     });
 }

@@ -9,7 +9,7 @@
 namespace hemirad {
 namespace {
 
-constexpr std::array kSignals{SIGINT, SIGTERM};
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 
 // A signal handler reaches nothing but globals.
 volatile std::sig_atomic_t g_requested = 0;
@@ -31,7 +31,7 @@ Interrupts::Interrupts() {
     action.sa_flags = SA_RESTART;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
         sigaction(kSignals[i], nullptr, &previous_[i]);
-        if (previous_[i].sa_handler == SIG_IGN) continue;  // nohup, a shell's background job
+        if (previous_[i].sa_handler == SIG_IGN) continue;
         sigaction(kSignals[i], &action, nullptr);
     }
 }

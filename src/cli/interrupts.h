@@ -5,7 +5,7 @@
 
 namespace hemirad {
 
-/// While one lives, the first SIGINT or SIGTERM is only noted, so that work can end in good order;
+/// While one lives, the first SIGINT, SIGTERM or SIGHUP is only noted, so that work can end in good order;
 /// the second leaves the program at once. One at a time.
 class Interrupts {
   public:
@@ -17,7 +17,7 @@ class Interrupts {
     bool requested() const;
 
   private:
-    std::array<struct sigaction, 2> previous_;
+    std::array<struct sigaction, 3> previous_;
 };
 
 }  // namespace hemirad

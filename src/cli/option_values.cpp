@@ -35,6 +35,18 @@ std::uint64_t whole_number(const OptionValue& value, std::uint64_t lowest, std::
     return *number;
 }
 
+std::uint64_t byte_count(const OptionValue& value) {
+    constexpr std::string_view kUnits = "KMGT";
+    auto number = value.text;
+    const auto unit = number.empty() ? kUnits.npos : kUnits.find(number.back());
+    if (unit != kUnits.npos) number.remove_suffix(1);
+    const double most = std::exp2(62);
+    const double bytes = parsed<double>(number).value_or(0) *
+                         (unit == kUnits.npos ? 1 : std::exp2(10 * (1.0 + double(unit))));
+    if (!(bytes >= 1) || bytes > most) reject(value, "a number of bytes, as 500M or 8G");
+    return static_cast<std::uint64_t>(bytes);
+}
+
 double positive_number(const OptionValue& value) {
     const auto number = parsed<double>(value.text);
     if (!number || !std::isfinite(*number) || *number <= 0) reject(value, "a number above 0");

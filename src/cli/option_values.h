@@ -19,6 +19,9 @@ struct OptionValue {
 
 std::uint64_t whole_number(const OptionValue& value, std::uint64_t lowest, std::uint64_t highest);
 
+/// "500M", "1.5G": a number above 0 of bytes, KiB (K), MiB (M), GiB (G) or TiB (T).
+std::uint64_t byte_count(const OptionValue& value);
+
 /// Above 0 and finite.
 double positive_number(const OptionValue& value);
 

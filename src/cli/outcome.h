@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/gather_lightmaps.h"
+#include "cli/memory.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
 #include "solver/accuracy.h"
@@ -45,6 +46,7 @@ struct Outcome {
     mp1map::DeviceSummary device;
     mp1map::PeArray pe_array;
     std::uint64_t device_bytes = 0;
+    MemoryEstimate memory;  ///< as told before the work began
     std::vector<std::filesystem::path> outputs;
     std::vector<std::string> warnings;
 };

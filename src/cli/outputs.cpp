@@ -51,20 +51,23 @@ double least_normal(PixelType type) {
     return type == PixelType::half ? 0x1p-14 : double{std::numeric_limits<float>::min()};
 }
 
-std::string settings_text(const SolveOptions& options) {
+/// Of a picture that was gathered, or of what patches show.
+std::string settings_text(SolveOptions options, bool gathered) {
+    if (!gathered) options.gather.reset();
     std::string text;
     for (const auto& [name, value] : deciding_options(options))
         text += (text.empty() ? "" : " ") + name + " " + value;
     return text;
 }
 
-std::vector<Attribute> attributes_of(const SolveOptions& options, const Solution& solution) {
+std::vector<Attribute> attributes_of(const SolveOptions& options, const Solution& solution,
+                                     bool gathered) {
     auto attributes = describe(solution, options.quantity);
     attributes.push_back({"version", std::string(HEMIRAD_VERSION)});
     attributes.push_back({"scene", options.scene.filename().string()});
     attributes.push_back({"resolution", double(options.solver.resolution)});
     attributes.push_back({"shooter_samples", double(options.solver.shooter_samples)});
-    attributes.push_back({"settings", settings_text(options)});
+    attributes.push_back({"settings", settings_text(options, gathered)});
     return attributes;
 }
 
@@ -128,7 +131,7 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
     for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
         write_lightmap(options, atlas,
                        layered_lightmap(options, mesh, layout, atlas, solution, error, gathered),
-                       attributes_of(options, solution));
+                       attributes_of(options, solution, gathered != nullptr));
 }
 
 void write_solved_scene(const SolveOptions& options, const Scene& scene,
@@ -154,7 +157,7 @@ void write_solved_scene(const SolveOptions& options, const Scene& scene,
 void write_interim_picture(const SolveOptions& options, const Scene& scene,
                            const std::vector<Camera>& cameras, const Mesh& mesh,
                            const ChartLayout& layout, const Solution& solution) {
-    auto attributes = attributes_of(options, solution);
+    auto attributes = attributes_of(options, solution, false);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
     const Solution lit = with_ambient(mesh, solution);
     for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas) {

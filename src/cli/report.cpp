@@ -114,6 +114,15 @@ Json seconds_json(const Outcome& outcome) {
             {"per_stage", stages}};
 }
 
+/// As told before the work began.
+Json estimate_json(const Outcome& outcome) {
+    Json parts = Json::object();
+    for (const MemoryPart& part : outcome.memory.parts) parts[part.name] = part.bytes;
+    return {{"memory_bytes", outcome.memory.bytes()},
+            {"compiler_bytes", outcome.memory.compiler_bytes},
+            {"memory_parts", parts}};
+}
+
 Json outputs_json(const Outcome& outcome) {
     Json outputs = Json::array();
     for (const auto& file : outcome.outputs) {
@@ -142,6 +151,7 @@ void write_report(const std::filesystem::path& path, const SolveOptions& options
         {"closure", {{"min", outcome.closure.least}, {"max", outcome.closure.most}}},
         {"gather", gather_json(outcome)},
         {"seconds", seconds_json(outcome)},
+        {"estimate", estimate_json(outcome)},
         {"peak_memory_bytes", peak_memory_bytes()},
         {"outputs", outputs_json(outcome)},
         {"warnings", outcome.warnings}};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "cli/checkpoint_file.h"
@@ -42,6 +41,7 @@ struct Work {
     std::optional<Checkpoint> checkpoint;  ///< of --resume
     Mesh mesh;
     ChartLayout layout;
+    MemoryEstimate memory = {};
 };
 
 /// A glTF as output means both: engines read its PNG, measurements the EXR beside it.
@@ -97,29 +97,9 @@ void require_few_bands(const Work& work, const SolveOptions& options,
         (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 
-/// The solver will have given its own back by then.
-void require_gather_memory(const Work& work, const SolveOptions& options,
-                           const mp1map::DeviceSummary& device) {
-    if (!options.gather) return;
-    const auto needed = gather_bytes(work.mesh, gathered_bands(options, work.mesh),
-                                     gather_settings(options), device);
-    if (needed <= device.global_memory) return;
-    throw InputError(work.scene.file + ": --gather needs " + bytes_text(needed) + ", " +
-                     device.name + " has " + bytes_text(device.global_memory) +
-                     "; raise --patch-size or lower --gather");
-}
-
-void require_memory(const Work& work, const SolveOptions& options,
-                    const mp1map::DeviceSummary& device) {
-    const auto resolution = options.target_error
-                                ? accuracy_at(first_step(*options.target_error)).resolution
-                                : options.solver.resolution;
-    const auto needed = device_bytes(work.mesh, resolution, options.solver, device);
-    if (needed > device.global_memory)
-        throw InputError(work.scene.file + ": needs " + bytes_text(needed) + ", " + device.name +
-                         " has " + bytes_text(device.global_memory) +
-                         "; raise --patch-size or lower --resolution");
-    require_gather_memory(work, options, device);
+void check_memory(Work& work, const SolveOptions& options, const mp1map::DeviceSummary& device) {
+    work.memory = estimate_memory(work.mesh, work.layout, options, device);
+    require_memory(work.scene.file, work.memory, options, device);
 }
 
 /// Where the options ask for none, nothing.
@@ -173,8 +153,10 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
                    const Interrupts& interrupts) {
     Checkpoints checkpoints(options, checked_identity(work, options, device.summary()));
     ProgressiveSolver solver(work.mesh, options.solver, device);
-    if (!options.quiet)
+    if (!options.quiet) {
         print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
+        std::cerr << memory_text(work.memory) << '\n';
+    }
     Outcome outcome;
     outcome.resumed_shots = resume(solver, work, options);
     const Stopwatch solving;
@@ -212,7 +194,7 @@ struct Solving {
     const Work& work;
     const mp1map::Device& device;
     const Interrupts& interrupts;
-    Stopwatch stopwatch = {};  ///< the time limit is that of all of them
+    Stopwatch stopwatch = {};  ///< the time limit is that of all of them and of the gather
 };
 
 Outcome solve_with(const Solving& solving, SolveOptions options, const SolverSettings& solver) {
@@ -224,7 +206,7 @@ Outcome solve_with(const Solving& solving, SolveOptions options, const SolverSet
 SolveOptions without_interim_files(SolveOptions options) {
     options.snapshots = {};
     options.checkpoint = options.resume = {};
-    options.solver.stop_every = 0;
+    options.solver.stop_every.clear();
     return options;
 }
 
@@ -297,7 +279,7 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
             finer.shooter_count() == work.mesh.shooter_count())
             return true;
         work.mesh = std::move(finer);
-        require_memory(work, options, device.summary());
+        check_memory(work, options, device.summary());
     }
     return true;
 }
@@ -317,9 +299,14 @@ std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,
                                                    const SolveOptions& options,
                                                    const Outcome& outcome) {
     const Work& work = solving.work;
+    const auto go_on = [&] {
+        return !solving.interrupts.requested() &&
+               solving.stopwatch.seconds() < options.solver.time_limit;
+    };
+    if (!go_on()) return {};
     try {
         return gather_lightmaps(options, work.mesh, work.layout, outcome.solution, solving.device,
-                                solving.interrupts);
+                                go_on);
     } catch (const std::exception&) {
         write_results(work, options, outcome);
         throw;
@@ -332,6 +319,14 @@ void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
         return;
     outcome.warnings.push_back("--target-error " + number_text(*options.target_error) +
                                (outcome.error ? ": not reached" : ": stopped before it was known"));
+    print_warnings(std::cerr, {outcome.warnings.back()});
+}
+
+void warn_of_missing_gather(const SolveOptions& options, Outcome& outcome) {
+    if (!options.gather || outcome.gathered) return;
+    outcome.warnings.push_back("--gather: stopped by --time-limit " +
+                               number_text(options.solver.time_limit) +
+                               "; the lightmap is that of the patches");
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
@@ -366,7 +361,7 @@ int solve(SolveOptions options) {
     check_channels(options, work.mesh);
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
-    require_memory(work, options, device.summary());
+    check_memory(work, options, device.summary());
 
     const Interrupts interrupts;
     if (!split_where_light_varies(work, options, device, interrupts)) {
@@ -379,11 +374,12 @@ int solve(SolveOptions options) {
     options.solver.resolution = outcome.accuracy.resolution;
     options.solver.shooter_samples = outcome.accuracy.shooter_samples;
     options.solver.sampling_error = outcome.accuracy.sampling_error;
+    outcome.memory = work.memory;
     outcome.warnings = warnings_of(work.scene, work.mesh);
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
-    if (options.gather && !interrupts.requested())
-        outcome.gathered = gathered_or_saved(solving, options, outcome);
+    if (options.gather) outcome.gathered = gathered_or_saved(solving, options, outcome);
+    if (!interrupts.requested()) warn_of_missing_gather(options, outcome);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);
@@ -410,7 +406,7 @@ void add_solve(CLI::App& app, Command& chosen) {
     add_solve_options(command, *options);
     on_chosen(command, [&chosen, options] {
         const auto checkpoint_shots = options->checkpoint ? options->checkpoint_every.shots : 0;
-        options->solver.stop_every = std::gcd(options->snapshots.shots, checkpoint_shots);
+        options->solver.stop_every = {options->snapshots.shots, checkpoint_shots};
         options->solver.timed = options->verbose || options->report.has_value();
         if (options->target_error) reject_with_target_error(*options);
         if (options->target_error)

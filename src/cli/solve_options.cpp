@@ -104,6 +104,13 @@ void add_gather(CLI::App& command, SolveOptions& options) {
          "--gather");
 }
 
+void add_memory_limit(CLI::App& command, std::optional<std::uint64_t>& limit) {
+    add_value(command,
+              {"--memory-limit", "SIZE",
+               "refuse, before the work begins, what needs more, e.g. 8G, 500M [what is free]"},
+              [&](const OptionValue& value) { limit = byte_count(value); });
+}
+
 void add_stop_options(CLI::App& command, SolverSettings& solver) {
     add_value(command, {"--tolerance", "T", "stop where unshot / emitted flux is below T [1e-3]"},
               [&](const OptionValue& value) { solver.tolerance = fraction(value); });
@@ -164,16 +171,20 @@ void add_layers(CLI::App& command, SolveOptions& options) {
         });
 }
 
+void add_pixel_options(CLI::App& command, SolveOptions& options) {
+    add_flag(
+        command, "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
+    add_lights(command, options.solver.parts.lights);
+    add_layers(command, options);
+}
+
 void add_picture_options(CLI::App& command, SolveOptions& options) {
     add_value(command,
               {"--quantity", "irradiance|radiosity", "what the lightmap holds, W/m^2 [irradiance]"},
               [&](const OptionValue& value) {
                   options.quantity = static_cast<Quantity>(one_of(value, kQuantities));
               });
-    add_flag(
-        command, "--half", [&] { options.pixels = PixelType::half; }, "16-bit floats in the EXR");
-    add_lights(command, options.solver.parts.lights);
-    add_layers(command, options);
+    add_pixel_options(command, options);
     add_value(command,
               {"--snapshot-every", "SHOTS|SECONDSs",
                "write the picture so far, what is unshot spread evenly"},
@@ -268,10 +279,22 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
     add_chart_options(command, options.charts);
     add_gather(command, options);
     add_stop_options(command, options.solver);
+    add_memory_limit(command, options.memory_limit);
     add_checkpoint_options(command, options);
     add_picture_options(command, options);
     add_machine_options(command, options);
     add_talk_options(command, options);
+}
+
+void add_cost_options(CLI::App& command, SolveOptions& options) {
+    add_scene(command, options.scene);
+    add_accuracy_options(command, options);
+    add_chart_options(command, options.charts);
+    add_gather(command, options);
+    add_stop_options(command, options.solver);
+    add_memory_limit(command, options.memory_limit);
+    add_pixel_options(command, options);
+    add_machine_options(command, options);
 }
 
 void add_scene(CLI::App& command, std::filesystem::path& scene) {

@@ -48,11 +48,15 @@ struct SolveOptions {
     LayerWishes layers;
     std::string device;  ///< as mp1map::Device::open takes it
     std::uint32_t compute_units = 0;
+    std::optional<std::uint64_t> memory_limit;  ///< bytes; else what the machine has to spare
     SnapshotInterval snapshots, checkpoint_every = {.seconds = 60};
     bool quiet = false, verbose = false, no_progress = false;
 };
 
 void add_solve_options(CLI::App& command, SolveOptions& options);
+
+/// Those that decide on memory and time, of info.
+void add_cost_options(CLI::App& command, SolveOptions& options);
 
 /// SCENE, of all that read one.
 void add_scene(CLI::App& command, std::filesystem::path& scene);

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -25,6 +26,15 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, int error) {
     fail(path, error == 0 ? "cannot be written" : std::generic_category().message(error));
+}
+
+/// On a file system of another machine a signal may interrupt it.
+bool sync(int descriptor) {
+    int status = 0;
+    do {
+        status = fsync(descriptor);
+    } while (status != 0 && errno == EINTR);
+    return status == 0;
 }
 
 /// Of a temporary file that has a name; a killed program may leave one.
@@ -62,7 +72,7 @@ class TemporaryFile {
 
     /// False, with errno, where disk or folder refuse.
     bool take_the_targets_place() {
-        kept_ = fsync(descriptor_) == 0 && (!name_.empty() || give_name()) &&
+        kept_ = sync(descriptor_) && (!name_.empty() || give_name()) &&
                 std::rename(name_.c_str(), target_.c_str()) == 0;
         return kept_;
     }
@@ -144,9 +154,9 @@ void fill(const fs::path& file, const fs::path& path,
     } catch (const std::exception& error) {
         const int reason = errno;
         if (!stream) fail(path, reason);
-        if (dynamic_cast<const InputError*>(&error) || dynamic_cast<const OutputError*>(&error)) {
+        if (dynamic_cast<const InputError*>(&error) || dynamic_cast<const OutputError*>(&error) ||
+            dynamic_cast<const std::bad_alloc*>(&error))
             throw;
-        }
         fail(path, error.what());
     }
     if (stream) stream.close();

@@ -7,6 +7,22 @@
 
 #include "lightmap/deflate.h"
 
+namespace hemirad {
+namespace {
+
+// stb asks for memory and does not look whether there was any.
+void* reallocated(void* memory, std::size_t bytes) {
+    void* const result = std::realloc(memory, bytes);
+    if (result == nullptr) throw std::bad_alloc();
+    return result;
+}
+
+}  // namespace
+}  // namespace hemirad
+
+#define STBIW_MALLOC(bytes) hemirad::reallocated(nullptr, bytes)
+#define STBIW_REALLOC(memory, bytes) hemirad::reallocated(memory, bytes)
+#define STBIW_FREE(memory) std::free(memory)
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb/stb_image_write.h>

@@ -18,6 +18,10 @@ namespace {
 
 constexpr std::string_view kOwn = "hemirad.";
 
+/// Bytes of pixels that a byte of the file holds at most: deflate's of one value (RFC 1951: 258
+/// bytes in two bits), which no scene's other compressions exceed by much.
+constexpr std::uint64_t kMostPacked = 1032;
+
 using Values = std::vector<float>;
 
 struct Request {
@@ -68,6 +72,19 @@ std::vector<Request> requests_of(const std::filesystem::path& path, const Imf::H
     lightmap.coverage.assign(lightmap.texel_count(), 1.0f);
     if (header.channels().findChannel("coverage") != nullptr) add("coverage", lightmap.coverage);
     return requests;
+}
+
+/// A few bytes may announce more texels than there is memory.
+void require_held(const std::filesystem::path& path, const Imf::Header& header,
+                  const Lightmap& lightmap) {
+    constexpr std::uint64_t kLeastSample = 2;  // bytes, of half
+    std::uint64_t channels = 0;
+    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) ++channels;
+    const std::uint64_t bytes = std::filesystem::file_size(path);
+    if (channels * kLeastSample * lightmap.texel_count() <= kMostPacked * bytes) return;
+    fail(path, "announces " + std::to_string(lightmap.width) + " x " +
+                   std::to_string(lightmap.height) + " texels of " + std::to_string(channels) +
+                   " channels, more than its " + std::to_string(bytes) + " bytes can hold");
 }
 
 void set_size(const std::filesystem::path& path, const Imf::Header& header, Lightmap& lightmap) {
@@ -121,6 +138,7 @@ ExrLightmap read_exr(const std::filesystem::path& path, const std::vector<std::s
         Imf::InputFile file(path.c_str(), 0);
         ExrLightmap exr{{0, 0, bands, {}, {}}, texts_in(file.header())};
         set_size(path, file.header(), exr.lightmap);
+        require_held(path, file.header(), exr.lightmap);
         const auto requests = requests_of(path, file.header(), exr.lightmap);
         read_pixels(file, exr.lightmap, requests);
         require_finite(path, requests);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ios>
+#include <new>
 #include <set>
 
 #include "errors.h"
@@ -27,6 +28,8 @@ constexpr std::size_t kLongestName = 255;
 
 /// Single-threaded, so that the order of the lines in the file is always the same.
 constexpr int kExrThreads = 0;
+/// Of ZIP_COMPRESSION.
+constexpr int kLinesInChunk = 16;
 
 class ExrStream : public Imf::OStream {
   public:
@@ -36,6 +39,7 @@ class ExrStream : public Imf::OStream {
     void write(const char bytes[], int count) override {
         stream_.write(bytes, count);
         require_good();
+        written_ += static_cast<std::uint64_t>(count);
     }
     /// Does not throw, because ~OutputFile() asks; a stream that cannot tell fails its next write.
     std::uint64_t tellp() override {
@@ -48,11 +52,14 @@ class ExrStream : public Imf::OStream {
         require_good();
     }
 
+    std::uint64_t written() const { return written_; }  ///< bytes
+
   private:
     void require_good() const {
         if (!stream_.good()) throw std::ios_base::failure("write failed");
     }
     std::ostream& stream_;
+    std::uint64_t written_ = 0;
 };
 
 /// Ledger::residual() of the worst band, computed here because the solver's library lies beside
@@ -150,6 +157,15 @@ Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type
     return frame;
 }
 
+/// OpenEXR 3.1 leaves out a chunk that it had no memory to compress, and does not say so.
+void write_chunks(Imf::OutputFile& file, const ExrStream& stream, int height) {
+    for (int line = 0; line < height; line += kLinesInChunk) {
+        const auto before = stream.written();
+        file.writePixels(std::min(kLinesInChunk, height - line));
+        if (stream.written() == before) throw std::bad_alloc();
+    }
+}
+
 }  // namespace
 
 std::vector<Attribute> describe(const Solution& solution, Quantity quantity) {
@@ -184,7 +200,7 @@ void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
         ExrStream exr_stream(stream, path.string());
         Imf::OutputFile file(exr_stream, header, kExrThreads);
         file.setFrameBuffer(frame.buffer);
-        file.writePixels(static_cast<int>(lightmap.height));
+        write_chunks(file, exr_stream, static_cast<int>(lightmap.height));
     });
 }
 

@@ -4,9 +4,21 @@
 #include <charconv>
 
 namespace hemirad {
+namespace {
 
-std::string csv_field(std::string_view text) {
-    if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+/// A spreadsheet computes what begins like this, and some of it runs programs. A sign alone does no
+/// harm: "+x" and "-x" are common names of walls.
+bool is_formula(std::string_view text) {
+    if (text.empty()) return false;
+    if (text[0] == '=' || text[0] == '@') return true;
+    return (text[0] == '+' || text[0] == '-') && text.find_first_of("(|!") != text.npos;
+}
+
+}  // namespace
+
+std::string csv_field(std::string_view name) {
+    const std::string text = (is_formula(name) ? "'" : "") + std::string(name);
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string field = "\"";
     for (const char c : text) field.append(c == '"' ? 2 : 1, c);
     return field + '"';

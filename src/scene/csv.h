@@ -5,7 +5,8 @@
 
 namespace hemirad {
 
-/// A field of a CSV line, RFC 4180: in quotes where it holds commas, quotes or line ends.
+/// A field of a CSV line, RFC 4180: in quotes where it holds commas, quotes or line ends; with
+/// an apostrophe before it where a spreadsheet would compute it.
 std::string csv_field(std::string_view text);
 
 /// 9 significant digits, like %.9g, whatever the locale.

@@ -9,7 +9,9 @@ namespace hemirad {
 namespace {
 
 // Deeper than any exporter nests; tinygltf descends into extras by recursion.
-constexpr int kDeepestNesting = 200;
+constexpr std::size_t kDeepestNesting = 200;
+// More than exporters write; an ordered object compares a new member with all before it.
+constexpr std::size_t kMostMembers = 10'000;
 constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;  // glTF 2.0, sec. 4.4
 
 std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
@@ -42,17 +44,23 @@ std::string_view json_text(const InputFile& file) {
     return std::string_view(file.bytes).substr(begin, length);
 }
 
-void check_nesting(const InputFile& file, std::string_view text) {
-    int depth = 0;
+/// Brackets and commas that do not stand in a string.
+void check_shape(const InputFile& file, std::string_view text) {
+    std::vector<std::size_t> commas;  // in what is open
+    std::vector<bool> is_object;
     bool in_string = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (in_string && c == '\\') ++i;
         if (c == '"') in_string = !in_string;
         if (in_string) continue;
-        if (c == '{' || c == '[') ++depth;
-        if (c == '}' || c == ']') --depth;
-        if (depth > kDeepestNesting) fail(file, "JSON", "is nested too deeply");
+        if (c == '{' || c == '[') commas.push_back(0), is_object.push_back(c == '{');
+        if (commas.size() > kDeepestNesting) fail(file, "JSON", "is nested too deeply");
+        if (commas.empty()) continue;
+        if (c == '}' || c == ']') commas.pop_back(), is_object.pop_back();
+        if (c == ',' && is_object.back() && ++commas.back() >= kMostMembers)
+            fail(file, "JSON",
+                 "an object holds more than " + std::to_string(kMostMembers) + " members");
     }
 }
 
@@ -70,7 +78,7 @@ std::string one_line(const std::string& message) {
 
 Json parse_json(const InputFile& file) {
     const std::string_view text = json_text(file);
-    check_nesting(file, text);
+    check_shape(file, text);
     try {
         return Json::parse(text);
     } catch (const Json::exception& error) {

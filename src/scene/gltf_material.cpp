@@ -2,7 +2,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
+#include <utility>
+
+#include <stb/stb_image.h>
 
 #include "scene/gltf_file.h"
 
@@ -11,9 +15,17 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 
+/// Half of 16384 x 16384: half a GiB while its average is taken. A few kilobytes of PNG may
+/// announce a thousand times that.
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 27;
+
+/// More than spectra of 1 nm have; what is made of bands grows with their square.
+constexpr std::size_t kMostBands = 1000;
+
 struct Materials {
     const GltfFile& gltf;
-    std::map<std::size_t, Rgb> texture_averages = {};
+    /// By where their bytes are: the same bufferView in many images is decoded once.
+    std::map<std::pair<int, std::size_t>, Rgb> image_averages = {};
 };
 
 // IEC 61966-2-1
@@ -45,6 +57,17 @@ Rgb average(const tinygltf::Image& image) {
     return mean;
 }
 
+void check_pixels(const GltfFile& gltf, const std::string& path, const unsigned char* bytes,
+                  int size) {
+    int width = 0, height = 0, channels = 0;
+    if (stbi_info_from_memory(bytes, size, &width, &height, &channels) == 0)
+        fail(gltf.file, path, "is neither PNG nor JPEG, or is damaged");
+    if (std::int64_t{width} * height <= kMostPixels) return;
+    fail(gltf.file, path,
+         "is " + std::to_string(width) + " x " + std::to_string(height) +
+             " pixels, more than the " + std::to_string(kMostPixels) + " that are read");
+}
+
 tinygltf::Image decoded(const GltfFile& gltf, std::size_t index) {
     const auto& image = gltf.model.images[index];
     const auto* bytes = image.image.data();
@@ -56,6 +79,7 @@ tinygltf::Image decoded(const GltfFile& gltf, std::size_t index) {
     }
     const std::string path = "images/" + std::to_string(index);
     if (size == 0) fail(gltf.file, path, "cannot be read");
+    check_pixels(gltf, path, bytes, static_cast<int>(size));
     tinygltf::Image pixels;
     std::string error, warning;
     if (!tinygltf::LoadImageData(&pixels, 0, &error, &warning, 0, 0, bytes, static_cast<int>(size),
@@ -65,23 +89,27 @@ tinygltf::Image decoded(const GltfFile& gltf, std::size_t index) {
     return pixels;
 }
 
+Rgb image_average(Materials& materials, std::size_t index) {
+    const int view = materials.gltf.model.images[index].bufferView;
+    const std::pair key{view, view >= 0 ? 0 : index};
+    const auto known = materials.image_averages.find(key);
+    if (known != materials.image_averages.end()) return known->second;
+    const auto pixels = decoded(materials.gltf, index);
+    return materials.image_averages[key] =
+               pixels.bits == 16 ? average<std::uint16_t>(pixels) : average<std::uint8_t>(pixels);
+}
+
 /// The colour that a texture has from afar; white where there is none.
 Rgb texture_average(Materials& materials, const Json& owner, const char* key) {
     const auto info = owner.find(key);
     if (info == owner.end() || !info->contains("index")) return {1, 1, 1};
     const auto index = (*info)["index"].get<std::size_t>();
-    const auto known = materials.texture_averages.find(index);
-    if (known != materials.texture_averages.end()) return known->second;
-
     const GltfFile& gltf = materials.gltf;
     const Json& texture = gltf.json["textures"][index];
     if (!texture.contains("source")) {
         fail(gltf.file, "textures/" + std::to_string(index), "has no image");
     }
-    const auto pixels = decoded(gltf, texture["source"].get<std::size_t>());
-    const Rgb mean =
-        pixels.bits == 16 ? average<std::uint16_t>(pixels) : average<std::uint8_t>(pixels);
-    return materials.texture_averages[index] = mean;
+    return image_average(materials, texture["source"].get<std::size_t>());
 }
 
 std::vector<double> tinted(const Json& owner, const char* key, double missing, const Rgb& tint) {
@@ -140,7 +168,7 @@ const Json* spectrum(const Json& json, const char* key) {
 }
 
 /// The names in the spectra of all materials, in order of first appearance.
-std::vector<std::string> named_bands(const Json& materials) {
+std::vector<std::string> named_bands(const GltfFile& gltf, const Json& materials) {
     std::vector<std::string> bands;
     for (const Json& material : materials) {
         for (const char* key : {"reflectance", "emission"}) {
@@ -150,6 +178,9 @@ std::vector<std::string> named_bands(const Json& materials) {
                 if (std::find(bands.begin(), bands.end(), band) == bands.end()) {
                     bands.push_back(band);
                 }
+                if (bands.size() > kMostBands)
+                    fail(gltf.file, "materials",
+                         "name more than " + std::to_string(kMostBands) + " bands");
             }
         }
     }
@@ -194,7 +225,7 @@ void read_gltf_materials(const GltfFile& gltf, Scene& scene) {
     const Json none = Json::array();
     const auto found = gltf.json.find("materials");
     const Json& list = found == gltf.json.end() ? none : *found;
-    const std::vector<std::string> bands = named_bands(list);
+    const std::vector<std::string> bands = named_bands(gltf, list);
     Materials materials{gltf};
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::string name = material_name(list[i], i);

@@ -1,5 +1,6 @@
 #include "scene/input_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -49,8 +50,13 @@ InputFile read_input_file(const std::filesystem::path& path) {
 }
 
 std::string in_quotes(std::string_view text) {
+    constexpr std::size_t kLongest = 200;  // a few lines of a terminal; names may be a megabyte
+    std::size_t length = std::min(text.size(), kLongest);
+    const auto is_inside = [&](char c) { return (c & 0xc0) == 0x80; };  // a character of UTF-8
+    while (length < text.size() && length > kLongest - 4 && is_inside(text[length])) --length;
     std::string result(1, '"');
-    result += printable(text);
+    result += printable(text.substr(0, length));
+    if (length < text.size()) result += "...";
     return result += '"';
 }
 

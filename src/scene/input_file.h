@@ -20,7 +20,7 @@ struct InputFile {
 /// Throws InputError for what is missing, a folder, unreadable or empty.
 InputFile read_input_file(const std::filesystem::path& path);
 
-/// The printable text in double quotes.
+/// The printable text in double quotes, for messages: what is long is cut off.
 std::string in_quotes(std::string_view text);
 /// At least two decimals, and as many as tell the value from its rounding: 1.20, 1.00001.
 std::string number(double value);

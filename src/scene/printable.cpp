@@ -29,6 +29,14 @@ bool second_byte_fits(unsigned char lead, unsigned char second) {
     return lead != 0xf4 || second < 0x90;
 }
 
+/// U+2028 to U+202E and U+2066 to U+2069: separate lines, or show what follows in another order.
+bool steers_lines(std::string_view character) {
+    if (character.size() != 3 || byte_at(character, 0) != 0xe2) return false;
+    const auto second = byte_at(character, 1), third = byte_at(character, 2);
+    if (second == 0x80) return third >= 0xa8 && third <= 0xae;
+    return second == 0x81 && third >= 0xa6 && third <= 0xa9;
+}
+
 /// Length of the printable character that the text begins with; 0 where it begins with none.
 std::size_t printable_length(std::string_view text) {
     const auto lead = byte_at(text, 0);
@@ -37,7 +45,8 @@ std::size_t printable_length(std::string_view text) {
     if (length == 0 || text.size() < length) return 0;
     for (std::size_t i = 1; i < length; ++i)
         if ((byte_at(text, i) & 0xc0) != 0x80) return 0;
-    return second_byte_fits(lead, byte_at(text, 1)) ? length : 0;
+    const bool fits = second_byte_fits(lead, byte_at(text, 1));
+    return fits && !steers_lines(text.substr(0, length)) ? length : 0;
 }
 
 std::string escape_of(unsigned char byte) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "scene/gltf_nodes.h"
 #include "scene/input_file.h"
@@ -15,6 +16,10 @@
 
 namespace hemirad {
 namespace {
+
+/// Corners and vertices of all nodes together: some 10 GB. A mesh is small in a file whose nodes
+/// show it a million times, and so are primitives that share their accessors.
+constexpr std::size_t kMostPlaced = 100'000'000;
 
 struct Builder {
     const GltfFile& gltf;
@@ -264,6 +269,47 @@ struct PlacedPrimitive {
     bool mirrored;
 };
 
+/// Elements that an accessor announces and may hold: what it lacks is told when it is read.
+std::size_t element_count(const tinygltf::Model& model, int index) {
+    const auto& accessor = model.accessors[static_cast<std::size_t>(index)];
+    if (accessor.bufferView < 0) return accessor.count;
+    const auto& view = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+    return std::min(accessor.count, view.byteLength);
+}
+
+/// Of the mesh.
+std::size_t placed_count(const GltfFile& gltf, const tinygltf::Mesh& mesh) {
+    std::set<int> positions;
+    std::size_t count = 0;
+    for (const auto& primitive : mesh.primitives) {
+        const auto position = primitive.attributes.find("POSITION");
+        if (primitive.mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end())
+            continue;
+        const std::size_t vertices = element_count(gltf.model, position->second);
+        if (positions.insert(position->second).second) count += vertices;
+        count += primitive.indices < 0 ? vertices : element_count(gltf.model, primitive.indices);
+    }
+    return count;
+}
+
+/// Before memory is asked for.
+void check_placed(const GltfFile& gltf, const std::vector<PlacedNode>& nodes) {
+    std::map<int, std::size_t> of_mesh;
+    std::size_t count = 0;
+    for (const PlacedNode& node : nodes) {
+        const int mesh = gltf.model.nodes[node.node].mesh;
+        if (mesh < 0) continue;
+        const auto [entry, is_new] = of_mesh.try_emplace(mesh, 0);
+        if (is_new)
+            entry->second = placed_count(gltf, gltf.model.meshes[static_cast<std::size_t>(mesh)]);
+        count += entry->second;
+    }
+    if (count <= kMostPlaced) return;
+    fail(gltf.file, "nodes",
+         "show meshes of " + std::to_string(count) + " vertices and corners, more than the " +
+             std::to_string(kMostPlaced) + " that are read");
+}
+
 /// TEXCOORD_1 of each vertex: by a habit of exporters where it lies in a lightmap. None where the
 /// primitive has none.
 std::vector<glm::dvec2> read_lightmap_uvs(const Builder& builder,
@@ -334,7 +380,9 @@ Scene read_gltf(const InputFile& file) {
     Builder builder{gltf};
     builder.scene.file = file.name;
     read_gltf_materials(gltf, builder.scene);
-    for (const PlacedNode& node : place_nodes(gltf)) add_mesh(builder, node);
+    const auto nodes = place_nodes(gltf);
+    check_placed(gltf, nodes);
+    for (const PlacedNode& node : nodes) add_mesh(builder, node);
     return std::move(builder.scene);
 }
 

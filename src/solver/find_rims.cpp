@@ -1,29 +1,42 @@
 #include "solver/find_rims.h"
 
 #include <algorithm>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <tuple>
+#include <unordered_map>
 
 namespace hemirad {
 namespace {
 
 struct Edge {
     std::uint32_t low, high;  ///< vertices
+    std::uint64_t sheet;
     std::uint32_t patch;
     std::uint8_t bit;
     bool ascends;
 };
 
-bool goes_on(const Mesh& mesh, const Edge& edge, const Edge& other) {
-    const std::uint32_t a = mesh.patches[edge.patch].surface, b = mesh.patches[other.patch].surface;
-    if (edge.ascends == other.ascends) return false;
-    if (a == b) return true;
-    const Surface &from = mesh.surfaces[a], &to = mesh.surfaces[b];
-    return from.plane != kOwnPlane && from.plane == to.plane &&
-           glm::dot(from.normal, to.normal) > 0;
+/// [surface] Alike where one goes on in the other: in the same plane, with fronts to the same side.
+std::vector<std::uint64_t> sheets_of(const Mesh& mesh) {
+    std::vector<std::uint64_t> sheets;
+    std::unordered_map<std::uint32_t, glm::dvec3> fronts;  // by plane, of its first surface
+    for (const Surface& surface : mesh.surfaces) {
+        if (surface.plane == kOwnPlane) {
+            sheets.push_back(2 * std::uint64_t{kOwnPlane} + sheets.size());
+            continue;
+        }
+        const auto& front = fronts.emplace(surface.plane, surface.normal).first->second;
+        const bool faces_back = glm::dot(surface.normal, front) < 0;
+        sheets.push_back(2 * std::uint64_t{surface.plane} + std::uint64_t{faces_back});
+    }
+    return sheets;
 }
 
+auto place_of(const Edge& edge) { return std::tuple(edge.low, edge.high, edge.sheet); }
+
 std::vector<Edge> edges_of(const Mesh& mesh, std::uint32_t corner_count) {
+    const auto sheets = sheets_of(mesh);
     std::vector<Edge> edges;
     edges.reserve(std::size_t{corner_count} * mesh.patches.size());
     for (std::uint32_t patch = 0; patch < mesh.patches.size(); ++patch)
@@ -31,11 +44,11 @@ std::vector<Edge> edges_of(const Mesh& mesh, std::uint32_t corner_count) {
             const auto& corners = mesh.patches[patch].corners;
             const std::uint32_t from = corners[k], to = corners[(k + 1) % corner_count];
             if (from != to)
-                edges.push_back({std::min(from, to), std::max(from, to), patch,
+                edges.push_back({std::min(from, to), std::max(from, to),
+                                 sheets[mesh.patches[patch].surface], patch,
                                  static_cast<std::uint8_t>(1u << k), from < to});
         }
-    std::ranges::sort(edges, {},
-                      [](const Edge& edge) { return std::tuple(edge.low, edge.high, edge.patch); });
+    std::ranges::sort(edges, {}, place_of);
     return edges;
 }
 
@@ -46,12 +59,11 @@ std::vector<std::uint8_t> find_rims(const Mesh& mesh, std::uint32_t corner_count
     const auto edges = edges_of(mesh, corner_count);
     for (auto first = edges.begin(); first != edges.end();) {
         const auto last = std::find_if(first, edges.end(), [&](const Edge& edge) {
-            return edge.low != first->low || edge.high != first->high;
+            return place_of(edge) != place_of(*first);
         });
-        for (auto edge = first; edge != last; ++edge)
-            if (std::none_of(first, last,
-                             [&](const Edge& other) { return goes_on(mesh, *edge, other); }))
-                rims[edge->patch] |= edge->bit;
+        const auto ascending = std::count_if(first, last, std::mem_fn(&Edge::ascends));
+        if (ascending == 0 || ascending == last - first)
+            for (auto edge = first; edge != last; ++edge) rims[edge->patch] |= edge->bit;
         first = last;
     }
     return rims;

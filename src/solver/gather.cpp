@@ -75,7 +75,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 Gather::Gather(const Mesh& mesh, const std::vector<std::vector<double>>& radiosity,
                const GatherSettings& settings, const mp1map::Device& device)
     : mesh_(mesh),
-      arrays_(patch_arrays(mesh)),
+      arrays_(patch_arrays(mesh, settings.form_factor == FormFactorMode::analytic)),
       salvo_(points_at_once(mesh, settings)),
       pipeline_(arrays_, even_light(arrays_), pipeline_settings(settings, salvo_), device),
       batch_(kLeastBatch) {

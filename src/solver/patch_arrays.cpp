@@ -134,14 +134,14 @@ std::vector<device::Cluster> clusters_of(const PatchArrays& arrays) {
     return clusters;
 }
 
-PatchArrays patch_arrays(const Mesh& mesh) {
+PatchArrays patch_arrays(const Mesh& mesh, bool with_rims) {
     const Extent extent = extent_of(mesh);
     PatchArrays arrays;
     arrays.corner_count = only_triangles(mesh) ? 3 : 4;
     arrays.centre = 0.5 * extent.least + 0.5 * extent.most;
     arrays.scale = normalising_scale(extent);
     store_polygons(arrays, mesh, mesh.patches);
-    arrays.rims = find_rims(mesh, arrays.corner_count);
+    if (with_rims) arrays.rims = find_rims(mesh, arrays.corner_count);
     arrays.rims.resize(arrays.stride);
     return arrays;
 }

@@ -13,6 +13,7 @@ namespace hemirad {
 namespace {
 
 constexpr std::uint32_t kPrefixPes = 64;  // of prefix_sum, an array a station
+static_assert(std::max(kPrefixPes, kReducePes) <= mp1map::kLeastWorkGroup);
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
 constexpr std::uint32_t kMostListEntries = std::numeric_limits<std::int32_t>::max();
@@ -188,7 +189,7 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
                                      std::uint32_t corner_count, std::size_t bands,
                                      std::uint32_t resolution, FormFactorMode mode,
                                      std::uint64_t row_bytes, const mp1map::PeArray& array,
-                                     std::uint32_t salvo) {
+                                     std::uint32_t salvo, bool count_shots) {
     const std::uint64_t stride = std::uint64_t{quotient_up(patches, kReduceBlock)} * kReduceBlock;
     const std::uint64_t stacks = std::uint64_t{array.array_count} * array.pe_count();
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
@@ -213,7 +214,8 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t rows =
         4 * ((row_capacity(shooters, stride, row_bytes, salvo) + salvo) * (stride + 1) +
              shooter_stride);
-    return geometry + radiosity + groups + plane + reduction + rows +
+    const std::uint64_t shots = count_shots ? 4 * shooter_stride : 0;
+    return geometry + radiosity + groups + plane + reduction + rows + shots +
            salvo * (projection + lists + analytic);
 }
 

@@ -243,6 +243,6 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
                                      std::uint32_t corner_count, std::size_t bands,
                                      std::uint32_t resolution, FormFactorMode mode,
                                      std::uint64_t row_bytes, const mp1map::PeArray& array,
-                                     std::uint32_t salvo = 1);
+                                     std::uint32_t salvo = 1, bool count_shots = false);
 
 }  // namespace hemirad

@@ -110,7 +110,8 @@ PipelineSettings pipeline_settings(const Mesh& mesh, const SolverSettings& setti
 
 ShotPipeline pipeline_for(const Mesh& mesh, const BandPlan& plan, const SolverSettings& settings,
                           const mp1map::Device& device) {
-    const PatchArrays patches = patch_arrays(mesh);
+    const PatchArrays patches =
+        patch_arrays(mesh, settings.form_factor == FormFactorMode::analytic);
     const ShooterArrays shooters = shooter_arrays(mesh, patches);
     const std::uint32_t stride = mesh.shooters.empty() ? patches.stride : shooters.polygons.stride;
     return ShotPipeline(patches, patch_light(mesh, plan, stride),
@@ -238,8 +239,9 @@ bool ProgressiveSolver::may_be_cut_short(std::uint64_t shots) const {
 std::uint64_t ProgressiveSolver::next_pause(std::uint64_t shots) const {
     std::uint64_t pause = settings_.max_shots;
     if (!may_be_cut_short(shots)) pause -= pipeline_.salvo() - 1;
-    if (settings_.stop_every == 0) return pause;
-    return std::min(pause, (shots / settings_.stop_every + 1) * settings_.stop_every);
+    for (const std::uint64_t every : settings_.stop_every)
+        if (every != 0) pause = std::min(pause, (shots / every + 1) * every);
+    return pause;
 }
 
 std::uint64_t ProgressiveSolver::passes_to(std::uint64_t shots) const {

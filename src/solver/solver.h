@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
@@ -29,9 +30,9 @@ struct SolverSettings {
     double tolerance = 1e-3;  ///< stop where unshot / emitted is below, in every band
     std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
     double time_limit = std::numeric_limits<double>::infinity();  ///< s
-    /// Calls back whenever the shots reach a multiple of this, or as soon as those that go at once
-    /// allow, besides a few times a second; 0: not.
-    std::uint64_t stop_every = 0;
+    /// Calls back whenever the shots reach a multiple of one of these, or as soon as those that go at
+    /// once allow, besides a few times a second; 0: not.
+    std::vector<std::uint64_t> stop_every = {};
     /// For rows of form factors, see usable_row_bytes(): a shooter whose row is kept need not look
     /// again.
     std::optional<std::uint64_t> row_bytes = {};

@@ -9,7 +9,7 @@
 
 #include "errors.h"
 
-namespace hemirad {
+namespace hemirad::checkpoint_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,6 +161,14 @@ TEST(CheckpointOf, ASolveThatWouldHaveEndedBeforeIsRefused) {
               "a.ckpt: made after 42 shots, more than --max-shots 41");
 }
 
+TEST_F(CheckpointFile, OfADeviceWhoseNameIsNoUtf8IsNotDoubtedOnIt) {
+    auto made = checkpoint();
+    made.made_with.device = "Ger\xe4t \xff";
+    write_checkpoint(file_, made);
+
+    EXPECT_EQ(doubt(file_, read_checkpoint(file_), made.made_with), std::nullopt);
+}
+
 TEST(CheckpointOf, AnotherDeviceIsDoubted) {
     auto other = identity();
     other.device = "abacus";
@@ -173,4 +181,4 @@ TEST(CheckpointOf, AnotherDeviceIsDoubted) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::checkpoint_file_test

@@ -3,6 +3,7 @@
 import json
 import resource
 import signal
+import subprocess
 import sys
 import time
 import unittest
@@ -165,7 +166,7 @@ class Interruption(Checkpoints):
         return self.solve_until("c.ckpt", *self.ARGUMENTS)
 
     def test_writes_what_was_asked_for_and_goes_on(self):
-        for stop in (signal.SIGINT, signal.SIGTERM):
+        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             process = self.start()
             process.send_signal(stop)
             self.assertEqual(130, process.wait(60))
@@ -180,6 +181,16 @@ class Interruption(Checkpoints):
                              (self.report()["resumed_shots"], self.report()["shots"]))
             for name in ("a.exr", "c.ckpt", "r.json"):
                 (self.folder / name).unlink()
+
+    def test_ignored_from_the_beginning_stays_ignored(self):
+        before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+        try:
+            process = self.start()
+        finally:
+            signal.signal(signal.SIGHUP, before)
+        process.send_signal(signal.SIGHUP)
+        with self.assertRaises(subprocess.TimeoutExpired):
+            process.wait(1)
 
     def test_on_a_full_disk_leaves_the_files_from_before(self):
         self.write("a.exr", "older")

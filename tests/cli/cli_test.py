@@ -191,6 +191,7 @@ class BadOptions(CommandLine):
                 "--max-shots": ("0", "-1", "1.5", "99999999999999999999"),
                 "--time-limit": ("0", "-3", "inf"),
                 "--row-memory": ("-1", "1.5", "1G"),
+                "--memory-limit": ("0", "-1G", "8X", "G", "1e40T", "nan"),
                 "--salvo": ("0", "16", "1.5", "all"),
                 "--quantity": ("light",),
                 "--compute-units": ("0", "100000"),

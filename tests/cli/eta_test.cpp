@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hemirad {
+namespace hemirad::eta_test {
 namespace {
 
 TEST(Eta, IsUnknownWithoutDecay) {
@@ -45,4 +45,4 @@ TEST(Eta, IsNothingBelowTheTolerance) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::eta_test

@@ -75,6 +75,23 @@ class Gather(CommandLine):
 
         self.assertNotEqual(*pictures)
 
+    def test_a_time_limit_ends_the_gather_and_the_picture_is_that_of_the_patches(self):
+        endless = ("--gather", "2048", "--gather-error", "0", "--texel-size", "0.01")
+        result = self.run_hemirad("solve", "scene.obj", "-o", "a.exr", "--report", "a.json",
+                                  *QUICK[:-2], *endless, "--time-limit", "2")
+        self.assertEqual(0, result.returncode, result.stderr)
+        self.assertIn("--gather: stopped by --time-limit 2", result.stderr)
+        self.assertIsNone(json.loads((self.folder / "a.json").read_text())["gather"])
+        self.assertNotIn("--gather", Exr(self.folder / "a.exr").text("settings"))
+
+    def test_only_a_gathered_picture_names_it_in_its_settings(self):
+        self.run_to("a.exr", *GATHER, "--snapshot-every", "2", "--keep-snapshots",
+                    "--max-shots", "4")
+        pictures = {file.name: "--gather 64" in Exr(file).text("settings")
+                    for file in self.folder.glob("*.exr")}
+        self.assertTrue(pictures.pop("a.exr"))
+        self.assertEqual({False}, set(pictures.values()))
+
     def test_bad_values(self):
         for arguments, says in ((("--gather", "8"), "--gather"), (("--gather", "x"), "--gather"),
                                 ((*GATHER, "--gather-error", "-1"), "--gather-error"),

@@ -4,7 +4,7 @@
 
 #include "errors.h"
 
-namespace hemirad {
+namespace hemirad::near_names_test {
 namespace {
 
 TEST(NearNames, TheDistanceCountsLettersWhateverTheirCase) {
@@ -33,4 +33,4 @@ TEST(NearNames, AnUnknownOneIsToldWithTheNearestOfAll) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::near_names_test

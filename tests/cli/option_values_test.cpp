@@ -6,7 +6,7 @@
 
 #include "errors.h"
 
-namespace hemirad {
+namespace hemirad::option_values_test {
 namespace {
 
 OptionValue value(std::string_view text) { return {"--size", text}; }
@@ -25,6 +25,15 @@ TEST(OptionValues, WholeNumbersIncludeBothLimits) {
     EXPECT_EQ(whole_number(value("8192"), 16, 8192), 8192u);
     EXPECT_THROW(whole_number(value("15"), 16, 8192), InputError);
     EXPECT_THROW(whole_number(value("8193"), 16, 8192), InputError);
+}
+
+TEST(OptionValues, BytesHaveUnitsOfTwoToTheTenth) {
+    EXPECT_EQ(byte_count(value("123")), 123u);
+    EXPECT_EQ(byte_count(value("1.5K")), 1536u);
+    EXPECT_EQ(byte_count(value("500M")), std::uint64_t{500} << 20);
+    EXPECT_EQ(byte_count(value("8G")), std::uint64_t{8} << 30);
+    for (const char* text : {"", "G", "0", "-1M", "1X", "nan", "1e40T"})
+        EXPECT_THROW(byte_count(value(text)), InputError) << text;
 }
 
 TEST(OptionValues, NumbersMayBeInfiniteOnlyWhereThatMeansSomething) {
@@ -60,4 +69,4 @@ TEST(OptionValues, ComplaintsNameOptionValueAndWhatIsAccepted) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::option_values_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hemirad {
+namespace hemirad::row_display_test {
 namespace {
 
 TEST(RowDisplay, RowsLeftTakeAsLongAsThoseDone) {
@@ -20,4 +20,4 @@ TEST(RowDisplay, TheBarGrowsWithTheRows) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::row_display_test

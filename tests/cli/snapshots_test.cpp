@@ -4,7 +4,7 @@
 
 #include "cli/shot_clock.h"
 
-namespace hemirad {
+namespace hemirad::snapshots_test {
 namespace {
 
 TEST(Snapshots, AreNeverDueUnlessAskedFor) {
@@ -49,4 +49,4 @@ TEST(ShotClock, TakesTheMedianOfItsIntervals) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::snapshots_test

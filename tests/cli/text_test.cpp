@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hemirad {
+namespace hemirad::text_test {
 namespace {
 
 TEST(Text, DurationsHaveTheUnitOfTheirSize) {
@@ -37,4 +37,4 @@ TEST(Text, CountsAgreeWithTheirNouns) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::text_test

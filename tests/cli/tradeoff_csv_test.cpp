@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-namespace hemirad {
+namespace hemirad::tradeoff_csv_test {
 namespace {
 
 const TradeoffScene kScene{"a, \"b\"", 0.5, 12};
@@ -80,4 +80,4 @@ TEST(TradeoffCsv, KeepsTheNumberOfFieldsWhateverTheName) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::tradeoff_csv_test

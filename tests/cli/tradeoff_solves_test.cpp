@@ -4,7 +4,7 @@
 
 #include "tests/scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::tradeoff_solves_test {
 namespace {
 
 /// A lamp of a square metre that faces a floor at 0.3 m.
@@ -75,4 +75,4 @@ TEST_F(SolvesTest, CountPatchesAndProxels) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::tradeoff_solves_test

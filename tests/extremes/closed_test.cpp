@@ -6,7 +6,7 @@
 #include "solver/nothing_escapes.h"
 
 // No proxel escapes from a closed scene, whatever its shape, its cuts and its turn.
-namespace hemirad::test {
+namespace hemirad::test::closed_test {
 namespace {
 
 Pieces turned(Pieces pieces, const glm::dmat3& rotation) {
@@ -151,4 +151,4 @@ TEST(LongClosedRooms, NothingEscapesFromFurnishedRoomsTurnedAtRandom) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::closed_test

@@ -6,7 +6,7 @@
 
 // Straight on the device, past the mesher, which would drop or mend them: patches without area,
 // twisted ones, cracks; and numbers of proxels and patches beyond a batch, a level or a group.
-namespace hemirad::test {
+namespace hemirad::test::degenerate_test {
 namespace {
 
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
@@ -180,4 +180,4 @@ TEST_P(Patches, BeyondABatchALevelAndAGroupAreAllProjected) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::degenerate_test

@@ -1,7 +1,7 @@
 #include "extremes/solves_many_shots.h"
 
 // Energy is neither made nor lost by many shots; solves_long_test and solves_soak_test have more.
-namespace hemirad::test {
+namespace hemirad::test::solves_ledger_test {
 namespace {
 
 TEST(ManyShots, CloseTheirBooksByCountsAfterTenThousand) {
@@ -13,4 +13,4 @@ TEST(ManyShots, CloseTheirBooksByClosedFormsAfterTenThousand) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::solves_ledger_test

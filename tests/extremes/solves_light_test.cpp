@@ -5,7 +5,7 @@
 
 // Light from the weakest to the strongest that the numbers hold, and reflectances up to where a
 // float ends.
-namespace hemirad::test {
+namespace hemirad::test::solves_light_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -144,4 +144,4 @@ TEST(CountableLight, IsCountedToItsEnds) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::solves_light_test

@@ -2,7 +2,7 @@
 #include "extremes/solves_one_shot.h"
 
 // Some ten seconds each.
-namespace hemirad::test {
+namespace hemirad::test::solves_long_test {
 namespace {
 
 class LongExtremes : public testing::TestWithParam<FormFactorMode> {};
@@ -32,4 +32,4 @@ TEST_P(LongExtremes, TwoMillionPatchesTakeTheirShot) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::solves_long_test

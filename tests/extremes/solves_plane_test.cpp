@@ -3,7 +3,7 @@
 
 // Planes from the coarsest to the finest, hemispheres and patches from one to many; what takes a
 // minute is in solves_long_test.cpp, and two million patches in solves_soak_test.cpp.
-namespace hemirad::test {
+namespace hemirad::test::solves_plane_test {
 namespace {
 
 class Plane : public testing::TestWithParam<FormFactorMode> {};
@@ -47,4 +47,4 @@ TEST(PlaneBeyondTheCounters, IsRefused) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::solves_plane_test

@@ -3,7 +3,7 @@
 
 // What a solution says does not depend on where the scene lies, how it is turned or in which unit
 // it is measured: emission is radiance, so irradiance has no length in it.
-namespace hemirad::test {
+namespace hemirad::test::solves_scale_test {
 namespace {
 
 constexpr double kPatchSize = 0.75;
@@ -111,4 +111,4 @@ TEST_P(Resampled, AliasesMoreThanAnyTransformation) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::solves_scale_test

@@ -1,7 +1,7 @@
 #include "extremes/solves_many_shots.h"
 
 // Minutes each.
-namespace hemirad::test {
+namespace hemirad::test::solves_soak_test {
 namespace {
 
 constexpr double kPatchSize = 0.4;  // m; with fewer patches nothing is left to shoot before
@@ -15,4 +15,4 @@ TEST(AMillionShots, CloseTheirBooksByClosedForms) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::solves_soak_test

@@ -6,7 +6,7 @@
 
 // Random small scenes, device against double precision: every proxel that the device's bound leaves
 // one owner has that owner, every other one of those that the bound admits.
-namespace hemirad::test {
+namespace hemirad::test::soup_test {
 namespace {
 
 constexpr std::uint64_t kScenesAShooter = 16;
@@ -109,4 +109,4 @@ TEST(LongSoup, OwnersOfAHundredThousandScenesAreThoseOfDoublePrecision) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::soup_test

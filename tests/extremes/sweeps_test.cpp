@@ -5,7 +5,7 @@
 #include "solver/support.h"
 
 // Sizes, distances, shapes and places, each taken to its extreme: owners against double precision.
-namespace hemirad::test {
+namespace hemirad::test::sweeps_test {
 namespace {
 
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
@@ -291,4 +291,4 @@ TEST(SweepOfFactors, OfATinyCupInALargeHall) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::sweeps_test

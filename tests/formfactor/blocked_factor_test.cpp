@@ -8,7 +8,7 @@
 #include "formfactor/shapes.h"
 #include "reference/closed_forms.h"
 
-namespace hemirad {
+namespace hemirad::blocked_factor_test {
 namespace {
 
 using test::facing_down;
@@ -223,4 +223,4 @@ TEST_P(Bounds, HoldForAllButOneInAHundred) {
 INSTANTIATE_TEST_SUITE_P(Targets, Bounds, ::testing::Values(1e-2, 1e-3, 1e-4));
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::blocked_factor_test

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace hemirad {
+namespace hemirad::enforce_test {
 namespace {
 
 /// Rows of a dense matrix; zeros are left out.
@@ -286,4 +286,4 @@ TEST(Enforce, AThousandPatchesOfVeryDifferentSizes) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::enforce_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace hemirad {
+namespace hemirad::factor_surfaces_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -176,4 +176,4 @@ TEST(AmongListed, IsTheSquareMatrixOfThoseThatAreRowsAndColumns) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::factor_surfaces_test

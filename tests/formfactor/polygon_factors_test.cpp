@@ -7,7 +7,7 @@
 #include "formfactor/shapes.h"
 #include "reference/closed_forms.h"
 
-namespace hemirad {
+namespace hemirad::polygon_factors_test {
 namespace {
 
 using test::area_of;
@@ -342,4 +342,4 @@ TEST(PolygonToPolygon, ClosesRandomTetrahedra) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::polygon_factors_test

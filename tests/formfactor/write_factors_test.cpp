@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace hemirad {
+namespace hemirad::write_factors_test {
 namespace {
 
 /// A sends to b and back; c is a back: nothing but a column.
@@ -99,4 +99,4 @@ TEST(WriteView3dSparse, ALineAFactor) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::write_factors_test

@@ -5,7 +5,7 @@
 #include "support/kernel_run.h"
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::add_up_factors_test {
 namespace {
 
 constexpr std::uint32_t kStride = 5 * kReduceBlock;
@@ -46,4 +46,4 @@ TEST(AddUpFactors, GivesTheSumsOfTheBlocksInBitsThatDoNotDependOnTheArray) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::add_up_factors_test

@@ -10,7 +10,7 @@
 #include "support/kernel_run.h"
 #include "support/patch_database.h"
 
-namespace hemirad::test {
+namespace hemirad::test::aim_hemisphere_test {
 namespace {
 
 using glm::dvec2;
@@ -218,4 +218,4 @@ TEST(AimHemisphere, AHaltedShotKeepsItsFrame) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::aim_hemisphere_test

@@ -3,7 +3,7 @@
 #include "support/kernel_run.h"
 #include "support/rectangles.h"
 
-namespace hemirad::test {
+namespace hemirad::test::bin_areas_test {
 namespace {
 
 constexpr std::uint32_t kResolution = 200;
@@ -75,4 +75,4 @@ TEST(BinAreasOfAHaltedShot, WritesNothing) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::bin_areas_test

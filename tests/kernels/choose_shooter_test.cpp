@@ -6,7 +6,7 @@
 #include "kernels/shared.h"
 #include "support/kernel_run.h"
 
-namespace hemirad::test {
+namespace hemirad::test::choose_shooter_test {
 namespace {
 
 constexpr std::int32_t kDiskProxels = 250;
@@ -513,4 +513,4 @@ TEST_P(ChooseShooter, AHaltedShotKeepsItsShooterAndItsBooks) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::choose_shooter_test

@@ -6,7 +6,7 @@
 #include "support/exact_bounds.h"
 #include "support/patch_database.h"
 
-namespace hemirad::test {
+namespace hemirad::test::clip_test {
 namespace {
 
 constexpr std::size_t kPatches = 40000;  // a multiple of sixteen
@@ -160,4 +160,4 @@ TEST(ClipAcrossTheAxis, TheRimBetweenTheCrossingsIsIncluded) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::clip_test

@@ -5,7 +5,7 @@
 
 #include "support/probe.h"
 
-namespace hemirad::test {
+namespace hemirad::test::compensated_test {
 namespace {
 
 struct Sum {
@@ -79,4 +79,4 @@ TEST_P(Compensated, WhatIsFarBelowTheSumIsKept) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::compensated_test

@@ -3,7 +3,7 @@
 #include "kernels/shared.h"
 #include "support/kernel_run.h"
 
-namespace hemirad::test {
+namespace hemirad::test::correct_near_pairs_test {
 namespace {
 
 constexpr std::int32_t kPatches = 64;
@@ -51,4 +51,4 @@ TEST_P(CorrectNearPairs, NothingChangesBeforeTheLastHemisphere) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::correct_near_pairs_test

@@ -3,7 +3,7 @@
 #include "support/kernel_run.h"
 #include "support/rectangles.h"
 
-namespace hemirad::test {
+namespace hemirad::test::count_areas_test {
 namespace {
 
 constexpr std::uint32_t kResolution = 200;  // not a whole number of any shape's tiles
@@ -77,4 +77,4 @@ TEST(CountAreasOfAHaltedShot, WritesNothing) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::count_areas_test

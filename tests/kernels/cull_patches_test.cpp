@@ -3,7 +3,7 @@
 #include "support/kernel_run.h"
 #include "support/patch_database.h"
 
-namespace hemirad::test {
+namespace hemirad::test::cull_patches_test {
 namespace {
 
 bool is_before(float height, Scalar3 corner) {
@@ -177,4 +177,4 @@ TEST_P(CullPatches, AHaltedShotLeavesTheStacksAlone) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::cull_patches_test

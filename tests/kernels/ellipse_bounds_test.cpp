@@ -5,7 +5,7 @@
 #include "kernels/shared.h"
 #include "support/exact_bounds.h"
 
-namespace hemirad::test {
+namespace hemirad::test::ellipse_bounds_test {
 namespace {
 
 constexpr std::size_t kArcs = 100000;  // a multiple of sixteen
@@ -175,4 +175,4 @@ TEST(EllipseBoundsOfArcs, DoNotDependOnTheLanes) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::ellipse_bounds_test

@@ -3,7 +3,7 @@
 #include "reference/closed_forms.h"
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::estimate_form_factors_test {
 namespace {
 
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0);
@@ -141,4 +141,4 @@ TEST_P(EstimateFormFactors, AClosedBoxAddsUpToOne) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::estimate_form_factors_test

@@ -5,7 +5,7 @@
 #include "support/kernel_run.h"
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::gather_irradiance_test {
 namespace {
 
 constexpr std::uint32_t kStride = 5 * kReduceBlock, kBlocks = 5, kBands = 3;
@@ -184,4 +184,4 @@ TEST(AimPoints, GoesNoFurtherWhereAMemberHasHalted) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::gather_irradiance_test

@@ -7,7 +7,7 @@
 #include "support/patch_database.h"
 #include "support/probe.h"
 
-namespace hemirad::test {
+namespace hemirad::test::hemisphere_test {
 namespace {
 
 using glm::dvec3;
@@ -220,4 +220,4 @@ TEST_P(Hemisphere, AReversedEdgeIsTheNegatedPlane) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::hemisphere_test

@@ -7,7 +7,7 @@
 #include "support/kernel_run.h"
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::init_plane_test {
 namespace {
 
 // The squares that tiles of a shape cover: the plane, and what the last tiles have beyond it.
@@ -84,4 +84,4 @@ TEST(InitPlaneOfThreeThousand, RootsAreZeroOutsideTheDiskAndNowhereElse) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::init_plane_test

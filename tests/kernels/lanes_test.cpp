@@ -6,7 +6,7 @@
 
 #include "support/probe.h"
 
-namespace hemirad::test {
+namespace hemirad::test::lanes_test {
 namespace {
 
 constexpr std::size_t kCount = 256;
@@ -63,4 +63,4 @@ TEST_P(Lanes, EveryOperationIsTheScalarOneInEachLane) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::lanes_test

@@ -6,7 +6,7 @@
 #include "support/patch_database.h"
 #include "support/probe.h"
 
-namespace hemirad::test {
+namespace hemirad::test::point_to_polygon_test {
 namespace {
 
 constexpr std::size_t kPatches = 20000;  // an even share for sixteen lanes
@@ -93,4 +93,4 @@ TEST(AngleOverSine, IsTheArcTangentOverItsSine) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::point_to_polygon_test

@@ -7,7 +7,7 @@
 #include "kernels/shared.h"
 #include "support/kernel_run.h"
 
-namespace hemirad::test {
+namespace hemirad::test::prefix_sum_test {
 namespace {
 
 constexpr std::uint32_t kResolution = 30;
@@ -116,4 +116,4 @@ TEST_P(PrefixSum, AHaltedShotKeepsItsCounts) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::prefix_sum_test

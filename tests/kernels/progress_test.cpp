@@ -8,7 +8,7 @@
 #include "kernels/shared.h"
 #include "support/kernel_run.h"
 
-namespace hemirad::test {
+namespace hemirad::test::progress_test {
 namespace {
 
 constexpr std::uint32_t kSalvo = 4, kMembers = 2 * kSalvo;
@@ -101,4 +101,4 @@ TEST(Progress, WhoIsDoneKeepsItsStation) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::progress_test

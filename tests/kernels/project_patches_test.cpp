@@ -5,7 +5,7 @@
 #include "reference/projector.h"
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::project_patches_test {
 namespace {
 
 // What single precision may move an edge or a plane by, on either side (kEdgeMargin), twice: the
@@ -118,4 +118,4 @@ TEST(OwnersOfTinyPatches, AreTheSameForEveryArray) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::project_patches_test

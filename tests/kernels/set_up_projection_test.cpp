@@ -5,7 +5,7 @@
 #include "support/kernel_run.h"
 #include "support/patch_database.h"
 
-namespace hemirad::test {
+namespace hemirad::test::set_up_projection_test {
 namespace {
 
 constexpr std::uint32_t kResolution = 64;
@@ -279,4 +279,4 @@ TEST(SetUpProjectionOfAHaltedShot, WritesNothing) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::set_up_projection_test

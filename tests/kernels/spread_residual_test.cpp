@@ -3,7 +3,7 @@
 #include "kernels/shared.h"
 #include "support/kernel_run.h"
 
-namespace hemirad::test {
+namespace hemirad::test::spread_residual_test {
 namespace {
 
 constexpr std::int32_t kDisk = 1000, kStride = 2 * kReduceBlock;
@@ -78,4 +78,4 @@ TEST_P(SpreadResidual, ARowThatSeesNothingStaysFinite) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::spread_residual_test

@@ -6,7 +6,7 @@
 #include "support/kernel_run.h"
 #include "support/patch_database.h"
 
-namespace hemirad::test {
+namespace hemirad::test::update_radiosity_test {
 namespace {
 
 constexpr std::uint32_t kStride = 4 * kReduceBlock;
@@ -187,4 +187,4 @@ TEST_P(UpdateRadiosity, NothingChangesBeforeTheShootersLastHemisphere) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::update_radiosity_test

@@ -7,7 +7,7 @@
 #include "support/kernel_run.h"
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::update_unshot_test {
 namespace {
 
 constexpr std::uint32_t kShooters = 4 * kReduceBlock, kStride = 6 * kReduceBlock;
@@ -239,4 +239,4 @@ TEST_P(UpdateUnshot, NothingChangesBeforeTheShootersLastHemisphere) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::update_unshot_test

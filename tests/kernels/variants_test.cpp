@@ -6,7 +6,7 @@
 
 #include "support/pipeline.h"
 
-namespace hemirad::test {
+namespace hemirad::test::variants_test {
 namespace {
 
 using mp1map::Broadcast;
@@ -131,4 +131,4 @@ TEST(Activity, OneSquareIsCountedInTheAreasThatItsRectangleTouches) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::variants_test

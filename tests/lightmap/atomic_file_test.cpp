@@ -11,7 +11,7 @@
 #include "errors.h"
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,4 +209,4 @@ TEST_F(AtomicFile, AskingBeforehandChangesNothing) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::atomic_file_test

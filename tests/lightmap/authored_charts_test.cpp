@@ -7,7 +7,7 @@
 #include "scene/scenes_by_hand.h"
 
 // Charts that the scene brings along.
-namespace hemirad {
+namespace hemirad::authored_charts_test {
 namespace {
 
 using Uvs = std::vector<glm::dvec2>;
@@ -245,4 +245,4 @@ TEST(AuthoredCharts, MirroredAndFlatTrianglesAreToldByName) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::authored_charts_test

@@ -6,7 +6,7 @@
 #include "errors.h"
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::chart_layout_test {
 namespace {
 
 Mesh mesh_of_many_sizes() {
@@ -170,4 +170,4 @@ TEST(ChartLayout, TexelSizeMustBeAPositiveNumber) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::chart_layout_test

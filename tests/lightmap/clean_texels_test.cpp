@@ -6,7 +6,7 @@
 #include "scene/scenes_by_hand.h"
 
 // Light that stays on its side of what stands on a surface, and goes on where nothing does.
-namespace hemirad {
+namespace hemirad::clean_texels_test {
 namespace {
 
 using Quad = std::vector<glm::dvec3>;
@@ -185,4 +185,4 @@ TEST(CleanTexels, FloorsOnBothSidesOfAThickWallKeepToThemselves) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::clean_texels_test

@@ -6,7 +6,7 @@
 #include "lightmap/support.h"
 #include "lightmap/write_exr.h"
 
-namespace hemirad {
+namespace hemirad::exr_diff_test {
 namespace {
 
 class ExrDiff : public InFolder {
@@ -62,4 +62,4 @@ TEST_F(ExrDiff, WhatCannotBeComparedExitsWithTwo) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::exr_diff_test

@@ -8,7 +8,7 @@
 #include "lightmap/cell_values.h"
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::find_splits_test {
 namespace {
 
 /// Squares of 2 m, of which those left of `x` are split into squares of 1 m.
@@ -119,4 +119,4 @@ TEST(FindSplits, NeedsTwiceTheErrorAfterASplit) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::find_splits_test

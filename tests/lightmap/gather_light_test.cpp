@@ -9,7 +9,7 @@
 #include "scene/scenes_by_hand.h"
 
 // Which texels are gathered, and what the others get, of light that a formula gives.
-namespace hemirad {
+namespace hemirad::gather_light_test {
 namespace {
 
 using Light = std::function<double(const glm::dvec3&)>;
@@ -228,4 +228,4 @@ TEST(GatherLight, StopsWhereItIsTold) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::gather_light_test

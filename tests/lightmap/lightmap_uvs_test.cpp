@@ -4,7 +4,7 @@
 
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::lightmap_uvs_test {
 namespace {
 
 Scene scene_of(const std::vector<glm::dvec3>& positions,
@@ -109,4 +109,4 @@ TEST(LightmapUvs, BlackBacksHaveNone) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::lightmap_uvs_test

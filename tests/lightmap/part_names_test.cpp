@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace hemirad {
+namespace hemirad::part_names_test {
 namespace {
 
 std::vector<std::string> names_of_lights(const std::vector<std::string>& lights) {
@@ -52,4 +52,4 @@ TEST(PartNames, AreDifferentWhereTheLightsAre) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::part_names_test

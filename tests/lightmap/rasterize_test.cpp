@@ -4,7 +4,7 @@
 
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::rasterize_test {
 namespace {
 
 /// Three of four cells, and in the corner of the fourth a triangle: half a cell.
@@ -223,4 +223,4 @@ TEST(Rasterize, EachBandHasItsOwnTexels) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::rasterize_test

@@ -5,7 +5,7 @@
 
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::surface_layers_test {
 namespace {
 
 glm::dvec3 vector_at(const Layer& layer, std::size_t texel) {
@@ -101,4 +101,4 @@ TEST(NormalLayer, HoldsTheSurfacesNormalAlsoInTheGutter) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::surface_layers_test

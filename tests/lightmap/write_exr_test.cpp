@@ -13,7 +13,7 @@
 #include "errors.h"
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::write_exr_test {
 namespace {
 
 class WriteExr : public InFolder {};
@@ -193,4 +193,4 @@ TEST_F(WriteExr, AMissingFolderIsTold) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::write_exr_test

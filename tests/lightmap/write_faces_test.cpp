@@ -3,7 +3,7 @@
 #include "errors.h"
 #include "lightmap/support.h"
 
-namespace hemirad {
+namespace hemirad::write_faces_test {
 namespace {
 
 class WriteFaces : public InFolder {};
@@ -85,4 +85,4 @@ TEST_F(WriteFaces, AFullDiskIsTold) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::write_faces_test

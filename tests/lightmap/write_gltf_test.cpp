@@ -14,7 +14,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #include <stb/stb_image.h>
 
-namespace hemirad {
+namespace hemirad::write_gltf_test {
 namespace {
 
 using testing::DoubleNear;
@@ -194,4 +194,4 @@ TEST_F(WriteGltf, TheExactLightmapIsNamed) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::write_gltf_test

@@ -9,7 +9,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #include <stb/stb_image.h>
 
-namespace hemirad {
+namespace hemirad::write_preview_test {
 namespace {
 
 class WritePreview : public InFolder {};
@@ -86,4 +86,4 @@ TEST_F(WritePreview, AFullDiskIsTold) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::write_preview_test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace mp1map {
+namespace mp1map::acu_test {
 namespace {
 
 constexpr const char* kSource = R"(
@@ -168,4 +168,4 @@ TEST_F(AcuTest, MemoryThatACpuLacksWhenItIsTouchedIsAFailedAllocation) {
 #endif
 
 }  // namespace
-}  // namespace mp1map
+}  // namespace mp1map::acu_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mp1map {
+namespace mp1map::cost_model_test {
 namespace {
 
 constexpr Mp1 kPaper{};
@@ -181,4 +181,4 @@ TEST(CostModel, WorkedExampleOfTheDocs) {
 }
 
 }  // namespace
-}  // namespace mp1map
+}  // namespace mp1map::cost_model_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace mp1map {
+namespace mp1map::device_test {
 namespace {
 
 // What `call` throws, as text; empty where it throws nothing of that kind.
@@ -93,4 +93,4 @@ TEST(Device, MoreComputeUnitsThanThereAreIsNoSuchDevice) {
 }
 
 }  // namespace
-}  // namespace mp1map
+}  // namespace mp1map::device_test

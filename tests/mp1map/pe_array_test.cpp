@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mp1map {
+namespace mp1map::pe_array_test {
 namespace {
 
 DeviceSummary cpu(std::uint32_t native_lanes = 16) {
@@ -57,6 +57,16 @@ TEST(PeArray, AnAreaOfACpuIsOneRowOfATileWhateverItsLanes) {
 
 TEST(PeArray, AGpuGetsManyPesOfOneLane) {
     EXPECT_EQ(fit_pe_array(gpu(), {}).description(), "32x8 PEs, 1 lane, tile 32x32");
+}
+
+TEST(PeArray, ADeviceOfSmallGroupsGetsFewerPes) {
+    auto small = gpu();
+    small.max_work_group = 64;
+    EXPECT_EQ(fit_pe_array(small, {}).description(), "32x2 PEs, 1 lane, tile 32x32");
+
+    PeArrayRequest request;
+    request.height = 16;
+    EXPECT_EQ(fit_pe_array(small, request).description(), "4x16 PEs, 1 lane, tile 32x32");
 }
 
 TEST(PeArray, WhatIsAskedForIsKept) {
@@ -144,4 +154,4 @@ TEST(PeArray, ATileBeyondTheLocalMemoryIsRefused) {
 }
 
 }  // namespace
-}  // namespace mp1map
+}  // namespace mp1map::pe_array_test

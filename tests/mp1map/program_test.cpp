@@ -11,7 +11,7 @@
 #include "mp1map/acu.h"
 #include "solver/kernel_source.h"
 
-namespace mp1map {
+namespace mp1map::program_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ TEST(Program, AKernelThatTheSourceLacksIsADeviceError) {
 }
 
 }  // namespace
-}  // namespace mp1map
+}  // namespace mp1map::program_test

@@ -11,7 +11,7 @@
 #include "reference/embree/embree_caster.h"
 #endif
 
-namespace hemirad::reference {
+namespace hemirad::reference::baselines_test {
 namespace {
 
 /// As the resolution grows.
@@ -337,4 +337,4 @@ TEST(EmbreeCaster, FindsWhatTheRayCasterFinds) {
 #endif
 
 }  // namespace
-}  // namespace hemirad::reference
+}  // namespace hemirad::reference::baselines_test

@@ -7,7 +7,7 @@
 
 #include "tests/reference/shapes.h"
 
-namespace hemirad::reference {
+namespace hemirad::reference::closed_forms_test {
 namespace {
 
 double point_factor(const glm::dvec3& origin, const glm::dvec3& normal, const Polygon& to) {
@@ -161,4 +161,4 @@ TEST(PointToPolygon, ClosesARoom) {
 }
 
 }  // namespace
-}  // namespace hemirad::reference
+}  // namespace hemirad::reference::closed_forms_test

@@ -5,7 +5,7 @@
 #include "reference/closed_forms.h"
 #include "tests/reference/shapes.h"
 
-namespace hemirad::reference {
+namespace hemirad::reference::form_factor_matrix_test {
 namespace {
 
 TEST(SamplePoints, AreTheCentresOfAQuadsCells) {
@@ -99,4 +99,4 @@ TEST(FormFactorMatrix, TakesHemispheresThatTheCallerPlaces) {
 }
 
 }  // namespace
-}  // namespace hemirad::reference
+}  // namespace hemirad::reference::form_factor_matrix_test

@@ -4,7 +4,7 @@
 
 #include "tests/reference/shapes.h"
 
-namespace hemirad::reference {
+namespace hemirad::reference::gauss_seidel_test {
 namespace {
 
 FormFactorMatrix doubly_stochastic_cube() {
@@ -106,4 +106,4 @@ TEST(GaussSeidel, SaysWhenItStopsShort) {
 }
 
 }  // namespace
-}  // namespace hemirad::reference
+}  // namespace hemirad::reference::gauss_seidel_test

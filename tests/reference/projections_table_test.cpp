@@ -7,7 +7,7 @@
 
 // Sec. 1.3.3, "for an equal number of sampling elements, a better form factor approximation is
 // obtained": RMS errors of single points' factors, printed as CSV and held to that order.
-namespace hemirad::reference {
+namespace hemirad::reference::projections_table_test {
 namespace {
 
 const std::vector<double> kSamples{768, 3072, 12288, 49152, 196608};
@@ -85,4 +85,4 @@ TEST_P(Projections, KeepTheirOrderAtEqualNumbersOfSamples) {
 INSTANTIATE_TEST_SUITE_P(Views, Projections, testing::Range(0, 6));
 
 }  // namespace
-}  // namespace hemirad::reference
+}  // namespace hemirad::reference::projections_table_test

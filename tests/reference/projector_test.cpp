@@ -5,17 +5,13 @@
 #include <numbers>
 
 #include "reference/closed_forms.h"
-#include "tests/reference/shapes.h"
+#include "tests/reference/views.h"
 
-namespace hemirad::reference {
+namespace hemirad::reference::projector_test {
 namespace {
 
 double fraction(const Truth& truth, int owner) {
     return double(truth.count(owner)) / double(disk_proxel_count(truth.resolution));
-}
-
-double closed_form(const Shooter& shooter, const Polygon& polygon) {
-    return point_to_polygon(shooter.origin, shooter.normal, polygon.corners);
 }
 
 std::size_t proxel(int column, int row, int resolution) {
@@ -363,4 +359,4 @@ TEST(ProjectorBound, LeavesFewProxelsUndecided) {
 }
 
 }  // namespace
-}  // namespace hemirad::reference
+}  // namespace hemirad::reference::projector_test

@@ -4,7 +4,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::lights_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -60,4 +60,4 @@ TEST(Lights, AreMaterialsWhereThatIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::lights_test

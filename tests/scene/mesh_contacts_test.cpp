@@ -10,7 +10,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_contacts_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -528,4 +528,4 @@ TEST(ContactSpeed, OfFacesThatAllCoverEachOtherIsBounded) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_contacts_test

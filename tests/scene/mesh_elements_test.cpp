@@ -10,7 +10,7 @@
 #include "scene/read_scene.h"
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_elements_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -466,4 +466,4 @@ TEST(Elements, TooSmallAreRefused) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_elements_test

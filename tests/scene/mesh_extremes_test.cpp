@@ -7,7 +7,7 @@
 #include "errors.h"
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_extremes_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -139,4 +139,4 @@ TEST(Weld, OutOfRangeIsAnInputError) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_extremes_test

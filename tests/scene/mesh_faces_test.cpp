@@ -6,7 +6,7 @@
 #include "errors.h"
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_faces_test {
 namespace {
 
 bool warns(const Mesh& mesh, const std::string& words) {
@@ -228,4 +228,4 @@ TEST(Warnings, OfTheSceneComeFirst) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_faces_test

@@ -4,7 +4,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_faults_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -153,4 +153,4 @@ TEST(InsideOut, SolidsAloneBesideOthersOrAboutThemAreNot) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_faults_test

@@ -10,7 +10,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_grid_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -385,4 +385,4 @@ TEST(Speed, OfAMillionQuadsIsLittleLessThanThatOfAQuarterMillion) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_grid_test

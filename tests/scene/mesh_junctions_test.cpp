@@ -7,7 +7,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_junctions_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -146,4 +146,4 @@ TEST(Junctions, OfAPlankFloorTakeSeconds) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_junctions_test

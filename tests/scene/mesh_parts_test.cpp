@@ -2,7 +2,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_parts_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -245,4 +245,4 @@ TEST(Backs, HaveNoFragments) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_parts_test

@@ -9,7 +9,7 @@
 
 #include "scene/scenes_by_hand.h"
 
-namespace hemirad {
+namespace hemirad::mesh_planes_test {
 namespace {
 
 using Faces = std::vector<std::vector<glm::dvec3>>;
@@ -197,4 +197,4 @@ TEST(Planes, OfHundredsOfThousandsOfSurfacesTakeSeconds) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::mesh_planes_test

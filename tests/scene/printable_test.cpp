@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
-namespace hemirad {
+#include <string>
+
+#include "scene/csv.h"
+#include "scene/input_file.h"
+
+namespace hemirad::printable_test {
 namespace {
 
 TEST(Printable, LeavesTextAsItIs) {
@@ -24,7 +29,39 @@ TEST(Printable, EscapesWhatIsNoUtf8) {
     EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
 }
 
+TEST(Printable, EscapesWhatReversesOrSeparatesLines) {
+    EXPECT_EQ(printable("a\u202etxt.jbo"), "a\\xe2\\x80\\xaetxt.jbo");
+    EXPECT_EQ(printable("a\u2028b\u2066c"), "a\\xe2\\x80\\xa8b\\xe2\\x81\\xa6c");
+    EXPECT_EQ(printable("\u2027\u202f\u2065\u206a"), "\u2027\u202f\u2065\u206a");  // beside them
+}
+
 TEST(Printable, GoesOnAfterABadByte) { EXPECT_EQ(printable("\xe2o\xc3\xb6"), "\\xe2o\xc3\xb6"); }
 
+TEST(InQuotes, CutsWhatIsLongBetweenCharacters) {
+    EXPECT_EQ(in_quotes("a\"b"), "\"a\"b\"");
+    EXPECT_EQ(in_quotes(std::string(200, 'x')), '"' + std::string(200, 'x') + '"');
+    EXPECT_EQ(in_quotes(std::string(199, 'x') + "\u00e4\u00e4"),
+              '"' + std::string(199, 'x') + "...\"");
+}
+
+TEST(CsvField, QuotesWhatPartsFields) {
+    EXPECT_EQ(csv_field("wall"), "wall");
+    EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
+}
+
+/// An apostrophe makes it text.
+TEST(CsvField, LeavesNothingForASpreadsheetToCompute) {
+    EXPECT_EQ(csv_field("=1+2"), "'=1+2");
+    EXPECT_EQ(csv_field("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");
+    EXPECT_EQ(csv_field("-cmd|' /C calc'!A0"), "'-cmd|' /C calc'!A0");
+    EXPECT_EQ(csv_field("+HYPERLINK(A1)"), "'+HYPERLINK(A1)");
+}
+
+TEST(CsvField, LeavesDirectionsAsTheyAre) {
+    EXPECT_EQ(csv_field("+x"), "+x");
+    EXPECT_EQ(csv_field("-z panel"), "-z panel");
+    EXPECT_EQ(csv_field("a=1"), "a=1");
+}
+
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::printable_test

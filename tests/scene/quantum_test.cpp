@@ -2,7 +2,7 @@
 
 #include "scene/scene_folder.h"
 
-namespace hemirad::test {
+namespace hemirad::test::quantum_test {
 namespace {
 
 class Quantum : public ::testing::Test {
@@ -79,4 +79,4 @@ TEST_F(Quantum, OfView3dIsThatOfItsVertices) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::quantum_test

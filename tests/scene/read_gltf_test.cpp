@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -9,7 +10,7 @@
 #include "scene/read_scene.h"
 #include "scene/scene_folder.h"
 
-namespace hemirad::test {
+namespace hemirad::test::read_gltf_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -602,6 +603,55 @@ INSTANTIATE_TEST_SUITE_P(
                 "buffers/0: its data URI does not hold 40 bytes"}),
     [](const auto& test) { return test.param.name; });
 
+/// A PNG of red, green and blue in eight bits, as far as its size.
+std::string png_of(std::size_t width, std::size_t height) {
+    const auto big_endian = [](std::size_t value) {
+        std::string bytes = little_endian(value);
+        std::reverse(bytes.begin(), bytes.end());
+        return bytes;
+    };
+    const std::string header = "IHDR" + big_endian(width) + big_endian(height) + "\x08\x02" +
+                               std::string(3 + 4, '\0');  // methods and a checksum
+    return "data:image/png;base64," + base64("\x89PNG\r\n\x1a\n" + big_endian(13) + header +
+                                             big_endian(0) + "IDAT" + big_endian(0));
+}
+
+/// Nodes that show one mesh, which shows all its corners again and again.
+void multiply(Json& gltf, std::size_t corners, std::size_t primitives, std::size_t nodes) {
+    set_indices(gltf, std::vector<std::uint16_t>(corners));
+    auto& mesh = gltf["meshes"][0];
+    mesh["primitives"] = Json(primitives, mesh["primitives"][0]);
+    gltf["nodes"] = Json(nodes, gltf["nodes"][0]);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Amounts, ReadBadGltf,
+    ::testing::Values(
+        BadGltf{"ImageTooLarge",
+                [](Json& g) {
+                    add_texture(g, {{"uri", png_of(16384, 16384)}});
+                },
+                "images/0: is 16384 x 16384 pixels, more than the 134217728 that are read"},
+        BadGltf{"CornersMultiplied", [](Json& g) { multiply(g, 3000, 1000, 1000); },
+                "nodes: show meshes of 3000003000 vertices and corners, more than the 100000000 "
+                "that are read"},
+        BadGltf{"TooManyMembers",
+                [](Json& g) {
+                    for (int i = 0; i <= 10000; ++i) g["extras"][std::to_string(i)] = i;
+                },
+                "JSON: an object holds more than 10000 members"},
+        BadGltf{"TooManyBands",
+                [](Json& g) {
+                    for (int i = 0; i <= 1000; ++i)
+                        g["materials"][0]["extras"]["reflectance"][std::to_string(i)] = 0.5;
+                },
+                "materials: name more than 1000 bands"},
+        BadGltf{"ReferenceOfAMegabyte",
+                [](Json& g) { g["buffers"][0]["uri"] = "../" + std::string(1 << 20, 'x'); },
+                "buffers/0/uri: \"../" + std::string(197, 'x') +
+                    "...\" must be a file in the scene's folder"}),
+    [](const auto& test) { return test.param.name; });
+
 INSTANTIATE_TEST_SUITE_P(
     Files, ReadBadGltf,
     ::testing::Values(
@@ -748,6 +798,43 @@ TEST_F(ReadGltf, RefusesWhatIsNotGltf) {
     EXPECT_THAT(folder.error_of(folder.path() / "no.glb"), HasSubstr("no.glb: does not exist"));
 }
 
+/// A link was put there by whoever owns the folder: collections of large files consist of links.
+TEST_F(ReadGltf, FollowsLinksWithinTheFolder) {
+    Json gltf = triangle_gltf();
+    gltf["buffers"][0]["uri"] = "scene/room.bin";
+    folder.write("store/a.bin", std::string(36, '\0'));
+    std::filesystem::create_directory_symlink(folder.path() / "store", folder.path() / "scene");
+    std::filesystem::create_symlink("a.bin", folder.path() / "store/room.bin");
+
+    EXPECT_EQ(folder.error_of(gltf), "");
+}
+
+/// Each of them anew would take minutes.
+TEST_F(ReadGltf, DecodesAnImageOnce) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    constexpr int kTextures = 1000;
+    std::vector<unsigned char> ppm;  // stb reads it, and it is easily large
+    const std::string head = "P6 1000 1000 255\n";
+    ppm.assign(head.begin(), head.end());
+    ppm.resize(head.size() + 3'000'000, 255);
+    add_accessor(gltf, ppm, "SCALAR", 5121, 1);
+    gltf["images"] = Json::array();
+    gltf["textures"] = Json::array();
+    gltf["materials"] = Json::array();
+    for (int i = 0; i < kTextures; ++i) {
+        gltf["images"].push_back({{"bufferView", 1}, {"mimeType", "image/png"}});
+        gltf["textures"].push_back({{"source", i}});
+        gltf["materials"].push_back(
+            {{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", i}}}});
+    }
+
+    const auto begin = std::chrono::steady_clock::now();
+    const Scene scene = folder.read(gltf);
+
+    EXPECT_EQ(scene.materials[kTextures - 1].emission, std::vector(3, 1.0));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
 TEST_F(ReadGltf, DoesNotReadBuffersFromTheWorkingFolder) {
     Json gltf = triangle_gltf();
     gltf["buffers"][0]["uri"] = "room.bin";
@@ -762,4 +849,4 @@ TEST_F(ReadGltf, DoesNotReadBuffersFromTheWorkingFolder) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::read_gltf_test

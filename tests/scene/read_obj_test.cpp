@@ -4,7 +4,7 @@
 #include "scene/read_scene.h"
 #include "scene/scene_folder.h"
 
-namespace hemirad::test {
+namespace hemirad::test::read_obj_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -225,7 +225,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(ReadObj, RefusesWhatIsNoFile) {
     EXPECT_THAT(folder.error_of(folder.path() / "no.obj"), HasSubstr("no.obj: does not exist"));
     EXPECT_THAT(folder.error_of(folder.path()), HasSubstr(": is a folder, not a scene file"));
-    EXPECT_EQ(folder.error_of("room.ply", "ply\n"), "room.ply: is neither .gltf, .glb, .obj nor .vs3");
+    EXPECT_EQ(folder.error_of("room.ply", "ply\n"),
+              "room.ply: is neither .gltf, .glb, .obj nor .vs3");
 }
 
 TEST_F(ReadObj, RefusesALibraryThatIsAFolder) {
@@ -237,4 +238,4 @@ TEST_F(ReadObj, RefusesALibraryThatIsAFolder) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::read_obj_test

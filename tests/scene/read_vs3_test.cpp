@@ -4,7 +4,7 @@
 #include "scene/mesh.h"
 #include "scene/scene_folder.h"
 
-namespace hemirad::test {
+namespace hemirad::test::read_vs3_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -245,4 +245,4 @@ TEST_F(ReadVs3, AFileWithoutSurfacesIsRefused) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::read_vs3_test

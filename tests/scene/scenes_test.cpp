@@ -11,7 +11,7 @@
 #include "scene/read_scene.h"
 #include "scene/scene_folder.h"
 
-namespace hemirad::test {
+namespace hemirad::test::scenes_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -142,4 +142,4 @@ TEST(Scenes, TheSquaresFaceEachOther) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::scenes_test

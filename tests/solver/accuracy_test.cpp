@@ -4,7 +4,7 @@
 
 #include "solver/support.h"
 
-namespace hemirad::test {
+namespace hemirad::test::accuracy_test {
 namespace {
 
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0);
@@ -113,4 +113,4 @@ TEST(Estimates, AreNotLessThanTheError) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::accuracy_test

@@ -7,7 +7,7 @@
 #include "solver/support.h"
 
 // In the furnace, where B = E / (1 - rho) in the end, what is unshot is known to arrive evenly.
-namespace hemirad::test {
+namespace hemirad::test::ambient_test {
 namespace {
 
 double mean(const std::vector<double>& values) {
@@ -36,4 +36,4 @@ TEST_P(AmbientAfterShots, MakesUpForWhatIsStillUnshot) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::ambient_test

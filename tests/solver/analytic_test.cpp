@@ -6,7 +6,7 @@
 #include "solver/support.h"
 
 // --form-factor analytic: closed forms times visible fractions, in whole solves.
-namespace hemirad::test {
+namespace hemirad::test::analytic_test {
 namespace {
 
 SolverSettings analytic(std::uint32_t resolution, double tolerance, double sampling_error = 1e-3) {
@@ -126,4 +126,4 @@ TEST(Analytic, AndWhateverThePowerOfTwoTheSceneIsScaledBy) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::analytic_test

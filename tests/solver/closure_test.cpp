@@ -5,7 +5,7 @@
 
 // Counts + escaped = proxels in the disk, and none escapes from a closed scene: no proxel is lost
 // between two patches that share an edge, or a part of one (T-junctions).
-namespace hemirad::test {
+namespace hemirad::test::closure_test {
 namespace {
 
 TEST(Closure, NothingEscapesFromTheFurnace) {
@@ -92,4 +92,4 @@ TEST(Closure, IsExactForEveryShotOfAnOpenScene) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::closure_test

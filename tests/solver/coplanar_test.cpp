@@ -4,7 +4,7 @@
 
 // Patches of one plane see each other edge-on, so they exchange nothing. A row sum does not show
 // it where they do: what a patch takes from its own wall it misses elsewhere.
-namespace hemirad::test {
+namespace hemirad::test::coplanar_test {
 namespace {
 
 bool in_one_plane(const Mesh& mesh, const Patch& a, const Patch& b) {
@@ -49,4 +49,4 @@ TEST(CoplanarPatches, ReceiveNothingFromTheBacksOfTheirSheets) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::coplanar_test

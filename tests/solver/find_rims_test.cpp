@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <chrono>
 
 #include "scene/scenes_by_hand.h"
 #include "solver/support.h"
 
-namespace hemirad::test {
+namespace hemirad::test::find_rims_test {
 namespace {
 
 int rims_of(const Mesh& mesh) {
@@ -54,6 +56,32 @@ TEST(FindRims, TrianglesHaveThreeEdgesWhereThereIsNothingElse) {
     EXPECT_EQ(find_rims(mesh, 4), std::vector<std::uint8_t>{0b1011});
 }
 
+TEST(FindRims, AFanOfManySurfacesAtOneEdgeIsNotComparedPairByPair) {
+    constexpr std::uint32_t kPairs = 200'000;
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < kPairs; ++i) {
+        Surface surface;
+        surface.plane = i;
+        surface.normal = {0, 0, 1};
+        for (const bool back : {false, true}) {
+            Patch patch{};
+            patch.corners = {0, 1, 2 + i, 2 + i};
+            if (back) std::swap(patch.corners[0], patch.corners[1]);
+            patch.surface = static_cast<std::uint32_t>(mesh.surfaces.size());
+            mesh.patches.push_back(patch);
+            mesh.surfaces.push_back(surface);
+        }
+    }
+    const auto start = std::chrono::steady_clock::now();
+
+    const auto rims = find_rims(mesh, 3);
+
+    // A fifth of a second; pair by pair minutes.
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    // Patches of a pair share all three edges.
+    EXPECT_EQ(std::ranges::count(rims, 0), std::ptrdiff_t{2 * kPairs});
+}
+
 // A sheet's front and back share edges, but face apart.
 TEST(FindRims, TheBackIsNotASurfaceGoneOn) {
     Scene paper = sheet({kLeft});
@@ -63,4 +91,4 @@ TEST(FindRims, TheBackIsNotASurfaceGoneOn) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::find_rims_test

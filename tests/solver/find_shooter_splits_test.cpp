@@ -7,7 +7,7 @@
 
 #include "solver/support.h"
 
-namespace hemirad::test {
+namespace hemirad::test::find_shooter_splits_test {
 namespace {
 
 /// A floor of 4 m x 2 m in patches of 1 m, numbered along x, then y, in elements of 0.5 m; and
@@ -95,4 +95,4 @@ TEST(FindShooterSplits, FindsNoneInAFurnace) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::find_shooter_splits_test

@@ -4,7 +4,7 @@
 
 // Patches by tiles are lists in one buffer, sized for patches that touch few tiles. Where they
 // outgrow it a shot halts (kBinsFull), the host makes room, and the shot is made again.
-namespace hemirad::test {
+namespace hemirad::test::full_lists_test {
 namespace {
 
 constexpr int kHuge = 20000;
@@ -91,4 +91,4 @@ TEST(FullLists, InALaterHemisphereForgetTheEarlierOnes) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::full_lists_test

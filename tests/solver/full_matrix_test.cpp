@@ -6,7 +6,7 @@
 #include "solver/support.h"
 
 // Progressive refinement and the full matrix (sec. 1.2) solve the same equation.
-namespace hemirad::test {
+namespace hemirad::test::full_matrix_test {
 namespace {
 
 constexpr std::uint32_t kResolution = 256;
@@ -34,8 +34,8 @@ void expect_full_matrix_solution(const Mesh& mesh, std::uint32_t samples) {
     for (std::size_t band = 0; band < mesh.bands.size(); ++band) {
         const auto full = full_matrix_solution(mesh, matrix, band);
         ASSERT_TRUE(full.converged);
-        largest = std::max(largest,
-                           largest_difference_of_lit(solution.radiosity[band], full.radiosity));
+        largest =
+            std::max(largest, largest_difference_of_lit(solution.radiosity[band], full.radiosity));
         largest = std::max(largest,
                            largest_difference_of_lit(solution.irradiance[band], full.irradiance));
         const auto& ledger = solution.ledger[band];
@@ -87,4 +87,4 @@ TEST(FullMatrix, OfTheScalarReferenceGivesTheSameRadiosity) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::full_matrix_test

@@ -9,7 +9,7 @@
 
 // A closed box whose walls are all alike: B = E / (1 - rho) everywhere. With one hemisphere a patch
 // that holds exactly where every patch sees the same, as in a cube of one or 2 x 2 patches a wall.
-namespace hemirad::test {
+namespace hemirad::test::furnace_test {
 namespace {
 
 struct Furnace {
@@ -82,4 +82,4 @@ TEST(FurnaceBoxOfAnyMesh, KeepsItsMeanBrightness) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::furnace_test

@@ -13,7 +13,7 @@
 #include "solver/support.h"
 
 // Texels that look for themselves.
-namespace hemirad::test {
+namespace hemirad::test::gather_test {
 namespace {
 
 using Bands = std::vector<std::vector<double>>;
@@ -201,4 +201,4 @@ TEST(Gather, InterpolatedTexelsAreWithinTheErrorOfGatheredOnes) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::gather_test

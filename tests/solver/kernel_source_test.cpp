@@ -8,7 +8,7 @@
 #include "errors.h"
 #include "solver/embedded_kernels.h"
 
-namespace hemirad {
+namespace hemirad::kernel_source_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,4 +115,4 @@ TEST(EmbeddedKernels, SayTheSameAsTheFolderTheyComeFrom) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::kernel_source_test

@@ -4,7 +4,7 @@
 #include "solver/support.h"
 
 // A shooter's row of form factors is kept, and its later shots go by it.
-namespace hemirad::test {
+namespace hemirad::test::known_rows_test {
 namespace {
 
 constexpr std::uint64_t kAnyBytes = std::uint64_t{1} << 30;
@@ -93,7 +93,7 @@ TEST_P(KnownRows, GoOnOverPauses) {
     const Mesh mesh = meshed(scene_named("cornell.gltf"), 0.2);
     auto how = this->how();
     const auto whole = solved(mesh, how, kAnyBytes);
-    how.stop_every = 7;
+    how.stop_every = {7};
 
     expect_equal(solved(mesh, how, kAnyBytes), whole);
 }
@@ -137,4 +137,4 @@ TEST(RowBytes, LeaveAMillionPatchesWithin300BytesEach) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::known_rows_test

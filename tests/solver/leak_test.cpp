@@ -7,7 +7,7 @@
 #include "solver/support.h"
 
 // A room without light in a hall that has some: what is shut in stays dark, to the last texel.
-namespace hemirad::test {
+namespace hemirad::test::leak_test {
 namespace {
 
 /// Hall of 4 m x 4 m x 2 m with a lamp for a ceiling; in it, on its floor, a room of 1 m height.
@@ -96,4 +96,4 @@ TEST(SealedRoom, GetsNoLightFromTheLightmapOverWallsWithoutThickness) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::leak_test

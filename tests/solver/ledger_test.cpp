@@ -4,7 +4,7 @@
 
 // Energy is neither made nor lost: emitted = absorbed + escaped + unshot in every band, and no
 // proxel of a shot is without owner or with two.
-namespace hemirad::test {
+namespace hemirad::test::ledger_test {
 namespace {
 
 struct Case {
@@ -53,7 +53,7 @@ TEST(Ledger, IsClosedInTheMiddleOfASolve) {
     const Mesh mesh = meshed(scene_named("cornell.gltf"), 0.11);
     const auto device = mp1map::Device::open("");
     auto how = settings(128);
-    how.stop_every = 7;
+    how.stop_every = {7};
     ProgressiveSolver solver(mesh, how, device);
 
     std::vector<double> absorbed;
@@ -96,4 +96,4 @@ TEST(Ledger, AbsorbedFluxIsWhatThePatchesSayThemselves) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::ledger_test

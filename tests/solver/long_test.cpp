@@ -5,7 +5,7 @@
 #include "solver/support.h"
 
 // What the other tests show on small settings, on the scenes as a user solves them.
-namespace hemirad::test {
+namespace hemirad::test::long_test {
 namespace {
 
 std::vector<Machine> all_machines() {
@@ -67,4 +67,4 @@ TEST(LongClosure, NothingEscapesFromTheHallsInAnyPosition) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::long_test

@@ -7,7 +7,7 @@
 #include "solver/support.h"
 #include "solver/sweep_point.h"
 
-namespace hemirad::test {
+namespace hemirad::test::mp1_statements_test {
 namespace {
 
 constexpr std::uint32_t kShots = 20;
@@ -181,4 +181,4 @@ TEST(PaperStatements, DeltasGiveFewProxelsAnotherOwner) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::mp1_statements_test

@@ -7,7 +7,7 @@
 #include "solver/patch_shapes.h"
 #include "support/patches.h"
 
-namespace hemirad::test {
+namespace hemirad::test::near_pairs_test {
 namespace {
 
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0);
@@ -97,4 +97,4 @@ TEST(ShooterSamples, AreManyOnlyWhereSomethingIsNear) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::near_pairs_test

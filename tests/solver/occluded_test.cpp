@@ -6,7 +6,7 @@
 #include "solver/view_factors.h"
 
 // View factors past blockers against rays, which know nothing of projections and closed forms.
-namespace hemirad::test {
+namespace hemirad::test::occluded_test {
 namespace {
 
 constexpr std::uint64_t kRays = 10'000'000;
@@ -58,4 +58,4 @@ TEST(LongOccluded, FactorsAmongSheetsAreThoseOfRays) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::occluded_test

@@ -5,7 +5,7 @@
 #include "solver/support.h"
 
 // Lights apart, and direct light: further bands of one solve.
-namespace hemirad::test {
+namespace hemirad::test::parts_test {
 namespace {
 
 using Kind = SolutionPart::Kind;
@@ -208,4 +208,4 @@ TEST(Parts, ThatADeviceCannotHoldAreRefused) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::parts_test

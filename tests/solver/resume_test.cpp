@@ -5,7 +5,7 @@
 #include "solver/support.h"
 
 // A solve that goes on from a state of another ends as if it had never stopped.
-namespace hemirad::test {
+namespace hemirad::test::resume_test {
 namespace {
 
 Solved ended(ProgressiveSolver& solver) {
@@ -31,7 +31,7 @@ Solved resumed(const Mesh& mesh, const SolverSettings& how, const SolveState& st
 std::vector<SolveState> states_on_the_way(const Mesh& mesh, SolverSettings how,
                                           std::uint64_t spacing) {
     constexpr std::uint64_t kFirst = 3;
-    how.stop_every = 1;
+    how.stop_every = {1};
     const auto device = mp1map::Device::open("");
     ProgressiveSolver solver(mesh, how, device);
     std::vector<SolveState> states;
@@ -188,4 +188,4 @@ TEST(Resume, RefusesWhatNoSolveComesTo) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::resume_test

@@ -4,7 +4,7 @@
 #include "solver/support.h"
 
 // Several patches shoot at once, and look at once or ahead.
-namespace hemirad::test {
+namespace hemirad::test::salvo_test {
 namespace {
 
 constexpr std::uint64_t kAnyBytes = std::uint64_t{1} << 30;
@@ -121,7 +121,7 @@ TEST_P(Salvo, GoesOnOverPausesWithTheSameBits) {
     const Mesh mesh = box();
     auto how = this->how(8);
     const auto whole = solved(mesh, how).solution;
-    how.stop_every = 5;
+    how.stop_every = {5};
 
     expect_equal(solved(mesh, how).solution, whole);
 }
@@ -216,4 +216,4 @@ TEST(Salvos, AreOfEightUnlessTimeOrMemoryIsNoMatter) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::salvo_test

@@ -7,7 +7,7 @@
 
 // The lightmap is the same to the last bit whatever the PE array, its lanes, its tiles and the
 // device's compute units.
-namespace hemirad::test {
+namespace hemirad::test::same_bits_test {
 namespace {
 
 std::vector<Machine> machines() {
@@ -39,7 +39,7 @@ TEST(SameBits, WhateverTheIntervalsOfTheHost) {
 
     for (const std::uint64_t every : {1u, 3u, 50u}) {
         SolverSettings in_steps = how;
-        in_steps.stop_every = every;
+        in_steps.stop_every = {every};
         ProgressiveSolver solver(mesh, in_steps, device);
         while (solver.solve([](const Progress&) { return false; }) == Stop::interrupted) {
         }
@@ -80,4 +80,4 @@ TEST(SameBits, OfGridCoordinatesWhateverThePowerOfTwo) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::same_bits_test

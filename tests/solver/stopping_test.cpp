@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -7,7 +8,7 @@
 #include "solver/support.h"
 
 // Every solve ends, at the tolerance or at a limit, and says which.
-namespace hemirad::test {
+namespace hemirad::test::stopping_test {
 namespace {
 
 /// A solver with its own copy of everything it needs.
@@ -100,7 +101,7 @@ TEST(Stopping, WhereTheCallbackSaysSo) {
 
 TEST(Stopping, CallsBackAtEveryMultiple) {
     auto how = settings(64, 1e-9, 50);
-    how.stop_every = 10;
+    how.stop_every = {10};
     Solving run(meshed(furnished_room(), 0.75), how);
     std::vector<std::uint64_t> multiples;
 
@@ -112,9 +113,26 @@ TEST(Stopping, CallsBackAtEveryMultiple) {
     EXPECT_EQ(multiples, (std::vector<std::uint64_t>{10, 20, 30, 40, 50}));
 }
 
+TEST(Stopping, PausesAtMultiplesOfEachIntervalAndNotOfTheirDivisors) {
+    auto how = settings(64, 1e-9, 40);
+    how.stop_every = {15, 14};
+    how.salvo = 1;
+    Solving run(meshed(furnished_room(), 0.75), how);
+    std::vector<std::uint64_t> pauses;
+
+    run.solver.solve([&](const Progress& progress) {
+        pauses.push_back(progress.shots);
+        return true;
+    });
+
+    for (const std::uint64_t due : {14, 15, 28, 30, 40})
+        EXPECT_EQ(std::ranges::count(pauses, due), 1) << due;
+    EXPECT_LT(pauses.size(), 30u);  // a pause after each shot would be 40
+}
+
 TEST(Stopping, UnshotNeverRises) {
     auto how = settings(64);
-    how.stop_every = 1;
+    how.stop_every = {1};
     Solving run(meshed(furnished_room(), 0.75), how);
     double unshot = 1 + 1e-6;
 
@@ -272,4 +290,4 @@ TEST(Numbers, OfAFarAwaySceneAreRightOrAnError) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::stopping_test

@@ -6,7 +6,7 @@
 #include "solver/support.h"
 
 // Patches shoot, their elements receive (Cohen et al.): Mesh::shooters and Mesh::patches.
-namespace hemirad::test {
+namespace hemirad::test::two_levels_test {
 namespace {
 
 Mesh two_levels(const Scene& scene, double patch_size, double element_size) {
@@ -162,4 +162,4 @@ TEST(TwoLevels, StayClosedWithSplitShooters) {
 }
 
 }  // namespace
-}  // namespace hemirad::test
+}  // namespace hemirad::test::two_levels_test

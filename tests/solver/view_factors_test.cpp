@@ -11,7 +11,7 @@
 #include "scene/scenes_by_hand.h"
 #include "support/patches.h"
 
-namespace hemirad {
+namespace hemirad::view_factors_test {
 namespace {
 
 using test::box;
@@ -264,4 +264,4 @@ TEST(ViewFactors, StopWhenTold) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::view_factors_test

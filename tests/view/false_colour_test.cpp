@@ -4,7 +4,7 @@
 
 #include "view/picture_of.h"
 
-namespace hemirad {
+namespace hemirad::false_colour_test {
 namespace {
 
 Lightmap row_of(const std::vector<float>& values) {
@@ -73,4 +73,4 @@ TEST(FalseColours, FitOnTheSmallestPicture) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::false_colour_test

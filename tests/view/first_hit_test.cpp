@@ -9,7 +9,7 @@
 
 #include "lit_scenes.h"
 
-namespace hemirad {
+namespace hemirad::first_hit_test {
 namespace {
 
 TEST(FirstHit, TheNearerFaceHidesTheFarther) {
@@ -99,4 +99,4 @@ TEST(FirstHit, FindsWhatTryingAllFacesFinds) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::first_hit_test

@@ -7,7 +7,7 @@
 #include "errors.h"
 #include "lit_scenes.h"
 
-namespace hemirad {
+namespace hemirad::render_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(Render, TheCamerasUpIsThePicturesUp) {
 }
 
 }  // namespace
-}  // namespace hemirad
+}  // namespace hemirad::render_test

@@ -1,0 +1,130 @@
+"""Memory and time told before the work, refusals, and what large work takes; see Load for the long
+ones. Not for doubtful numbers: a quarter of what happens is the promise."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import time
+import unittest
+
+from cli_test import HEMIRAD, CommandLine
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES = ROOT / "scenes"
+MIB = 1 << 20
+
+
+def resident_bytes(pid):
+    try:
+        status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="ascii")
+    except OSError:
+        return 0
+    found = re.search(r"VmRSS:\s+(\d+) kB", status)
+    return 1024 * int(found.group(1)) if found else 0
+
+
+class LimitsTest(CommandLine):
+    def report_of(self, scene, *options):
+        result = self.run_hemirad("solve", SCENES / scene, "-o", "a.exr", "--report", "a.json",
+                                  "--no-progress", *options, timeout=2500)
+        self.assert_done(result)
+        return json.loads((self.folder / "a.json").read_text()), result.stderr
+
+
+class Memory(LimitsTest):
+    def assert_estimated(self, scene, *options):
+        # Whether kernels had to be compiled is not for the test to say: first they are not to be.
+        self.report_of(scene, *options)
+        report, _ = self.report_of(scene, *options)
+        estimate, peak = report["estimate"]["memory_bytes"], report["peak_memory_bytes"]
+        self.assertLess(abs(estimate / peak - 1), 0.25, f"{scene} {options}: {estimate} {peak}")
+
+    def test_what_a_solve_takes_is_estimated_within_a_quarter(self):
+        self.assert_estimated("cornell.gltf", "--quality", "draft")
+
+    def test_large_lightmaps_are_estimated_too(self):
+        self.assert_estimated("lroom.obj", "--quality", "draft", "--max-shots", "3", "--texel-size",
+                              "0.01", "--layers", "normal,position")
+
+    def test_info_and_report_tell_the_same(self):
+        options = ("--quality", "draft", "--row-memory", "1", "--layers", "shots")
+        report, told = self.report_of("cornell.gltf", *options, "--max-shots", "3")
+        info = self.run_hemirad("info", SCENES / "cornell.gltf", *options, "--max-shots", "3")
+        self.assert_done(info)
+        in_info = re.search(r"^memory +(about .*?);", info.stdout, re.M).group(1)
+        self.assertIn("memory " + in_info, told)
+        self.assertEqual(report["estimate"]["memory_bytes"],
+                         sum(report["estimate"]["memory_parts"].values()))
+
+    def test_quiet_says_nothing_of_it(self):
+        _, told = self.report_of("cornell.gltf", "--quality", "draft", "--max-shots", "1",
+                                 "--quiet")
+        self.assertEqual("", told)
+
+    def refused(self, *options):
+        result = self.run_hemirad("solve", SCENES / "cornell.gltf", "-o", "a.exr", *options)
+        self.assertEqual(1, result.returncode, result.stderr)
+        self.assertEqual(1, len(result.stderr.splitlines()), result.stderr)
+        self.assertFalse((self.folder / "a.exr").exists())
+        return result.stderr
+
+    def test_a_limit_refuses_before_the_work_with_numbers_and_advice(self):
+        started = time.monotonic()
+        line = self.refused("--memory-limit", "100M")
+        self.assertRegex(line, r"cornell\.gltf: needs about \d+ MiB, --memory-limit is 100 MiB; "
+                               r"\d.* for rows of form factors: lower --row-memory")
+        self.assertLess(time.monotonic() - started, 10)
+
+    def test_the_advice_is_for_the_largest_part(self):
+        self.assertIn("raise --texel-size",
+                      self.refused("--memory-limit", "0.3G", "--texel-size", "0.0005"))
+        self.assertIn("--patch-size", self.refused("--memory-limit", "100M", "--row-memory", "0"))
+
+    def test_what_fits_the_limit_is_solved(self):
+        self.report_of("cornell.gltf", "--quality", "draft", "--max-shots", "1", "--memory-limit",
+                       "1.5G")
+
+
+class Load(LimitsTest):
+    def test_two_million_patches_fit_24_gib(self):
+        report, _ = self.report_of("hall14k.obj", "--patch-size", "0.0298", "--quality", "draft",
+                                   "--max-shots", "3", "--memory-limit", "24G")
+        self.assertGreaterEqual(report["scene"]["patches"], 2_000_000)
+        self.assertLess(report["peak_memory_bytes"], 24 << 30)
+        print("peak", report["peak_memory_bytes"] / MIB, "MiB, estimated",
+              report["estimate"]["memory_bytes"] / MIB, file=sys.stderr)
+
+    def test_a_plane_of_8192_squared_proxels(self):
+        report, _ = self.report_of("hall2k.obj", "--resolution", "8192", "--max-shots", "3")
+        self.assertEqual(3, report["shots"])
+        self.assertEqual(1, report["closure"]["min"])
+        self.assertEqual(1, report["closure"]["max"])
+        print("peak", report["peak_memory_bytes"] / MIB, "MiB", file=sys.stderr)
+
+
+class Soak(LimitsTest):
+    def test_memory_stays_flat_over_a_million_shots(self):
+        subprocess.run([sys.executable, SCENES / "generate.py", self.folder, "furnace", "--rho",
+                        "0.98"], check=True)
+        command = [HEMIRAD, "solve", "furnace.obj", "-o", "a.exr", "--report", "a.json", "--quiet",
+                   "--quality", "draft", "--max-shots", "1000000", "--tolerance", "1e-12"]
+        samples = []
+        with subprocess.Popen(command, cwd=self.folder) as process:
+            while process.poll() is None:
+                samples.append(resident_bytes(process.pid))
+                time.sleep(0.5)
+        self.assertEqual(0, process.returncode)
+        report = json.loads((self.folder / "a.json").read_text())
+        self.assertGreaterEqual(report["shots"], 1_000_000)
+        # Rows are taken as shooters come; by a third of the time each has one.
+        solving = [sample for sample in samples[:-2] if sample > 0]
+        later = solving[len(solving) // 3:]
+        self.assertGreater(len(later), 10)
+        self.assertLess(max(later) - min(later), 4 * MIB, later)
+        print(f"{report['seconds']['solve']:.0f} s, {min(later) / MIB:.1f} to "
+              f"{max(later) / MIB:.1f} MiB", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
