@@ -82,7 +82,16 @@ void Acu::read(const cl::Buffer& buffer, void* values, std::size_t bytes) {
     guarded("unload", [&] { queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, values); });
 }
 
+// A device may take fewer work-items of a kernel than of others: its registers are shared.
+void Acu::require_group(const Kernel& kernel, std::size_t work_items) const {
+    if (work_items <= kernel.most_work_items) return;
+    throw NoSuchDevice(device_name_ + ": " + kernel.name + ": takes at most " +
+                       std::to_string(kernel.most_work_items) + " work-items a group, not " +
+                       std::to_string(work_items) + ": lower --pe");
+}
+
 void Acu::launch(Kernel& kernel, Grid grid) {
+    require_group(kernel, grid.local);
     guarded(kernel.name, [&] {
         cl::Event event;
         queue_.enqueueNDRangeKernel(kernel.handle, cl::NullRange,

@@ -24,7 +24,8 @@ struct Grid {
 
 /// The array control unit (sec. 1.4): the host's side of the machine. It issues kernels to the PE
 /// array in order, moves plural variables in and out, and keeps the device's clock.
-/// Every failing call throws DeviceError with the name of what failed.
+/// Every failing call throws DeviceError with the name of what failed, a group larger than the
+/// device takes NoSuchDevice.
 class Acu {
   public:
     /// `timed`: keep the seconds every kernel took (costs an event a launch).
@@ -115,6 +116,7 @@ class Acu {
     void fill_zero(const cl::Buffer& buffer, std::size_t bytes);
     void write(const cl::Buffer& buffer, const void* values, std::size_t bytes);
     void read(const cl::Buffer& buffer, void* values, std::size_t bytes);
+    void require_group(const Kernel& kernel, std::size_t work_items) const;
     void launch(Kernel& kernel, Grid grid);
     void collect();
 

@@ -51,6 +51,11 @@ std::string what_lacks(const cl::Device& device, const DeviceSummary& summary) {
     return {};
 }
 
+bool is_divisible(const cl::Device& device) {
+    const auto ways = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
+    return std::ranges::find(ways, CL_DEVICE_PARTITION_BY_COUNTS) != ways.end();
+}
+
 DeviceSummary summarise(const cl::Device& device, const std::string& platform, std::size_t index) {
     DeviceSummary summary;
     summary.index = index;
@@ -64,6 +69,7 @@ DeviceSummary summarise(const cl::Device& device, const std::string& platform, s
     summary.local_memory = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
     summary.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     summary.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    summary.is_divisible = is_divisible(device);
     summary.lacks = what_lacks(device, summary);
     return summary;
 }
@@ -199,6 +205,9 @@ Device Device::open(const std::string& selector, std::uint32_t compute_units) {
     if (compute_units > summary.compute_units)
         throw NoSuchDevice("--compute-units " + std::to_string(compute_units) + ": " +
                            summary.name + " has " + std::to_string(summary.compute_units));
+    if (compute_units != 0 && compute_units < summary.compute_units && !summary.is_divisible)
+        throw NoSuchDevice("--compute-units " + std::to_string(compute_units) + ": " +
+                           summary.name + " cannot be divided");
     try {
         if (compute_units != 0 && compute_units < summary.compute_units) {
             device = divided(device, compute_units);

@@ -39,6 +39,7 @@ struct DeviceSummary {
     std::uint32_t native_lanes = 1;  ///< its preferred float vector width
     std::size_t max_work_group = 0;  ///< work-items
     std::uint64_t local_memory = 0, global_memory = 0, max_allocation = 0;  ///< bytes
+    bool is_divisible = false;  ///< into devices of fewer compute units
     std::string lacks;  ///< why it cannot be used, e.g. `has no compiler`; empty where it can
 };
 

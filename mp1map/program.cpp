@@ -36,6 +36,10 @@ cl::Kernel kernel_of(const cl::Program& program, const std::string& name) {
     }
 }
 
+Kernel described(const std::string& name, const cl::Kernel& kernel, const Device& device) {
+    return {name, kernel, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.handle())};
+}
+
 cl::Program built(const Device& device, const std::string& source, const std::string& options) {
     cl::Program program(device.context(), source);
     const auto all_options = "-cl-std=CL1.2" + rounding_option(device) + " " + options;
@@ -58,7 +62,7 @@ std::map<std::string, Kernel> build_kernels(const Device& device,
         const cl::Program program = built(device, source, options);
         std::map<std::string, Kernel> kernels;
         for (const auto& name : names)
-            kernels.emplace(name, Kernel{name, kernel_of(program, name)});
+            kernels.emplace(name, described(name, kernel_of(program, name), device));
         return kernels;
     } catch (const cl::Error& error) {
         throw DeviceError(device.summary().name + ": kernels: " + failure_text(error));

@@ -12,6 +12,7 @@ namespace mp1map {
 struct Kernel {
     std::string name;
     cl::Kernel handle;
+    std::size_t most_work_items = 0;  ///< that a group of it may have on its device
 };
 
 /// Compiles `source`, which holds a kernel of each of the names, as one program: the compiler reads

@@ -53,8 +53,10 @@ void add_resolutions(std::vector<PlannedPoint>& plan, const SweepPoint& base) {
 }
 
 void add_compute_units(std::vector<PlannedPoint>& plan, const SweepPoint& base,
-                       std::uint32_t units) {
-    for (std::uint32_t fewer = 1; fewer < units; ++fewer) plan.push_back({base, fewer});
+                       const mp1map::DeviceSummary& device) {
+    if (!device.is_divisible) return;
+    for (std::uint32_t fewer = 1; fewer < device.compute_units; fewer *= 2)
+        plan.push_back({base, fewer});
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ std::vector<PlannedPoint> sweep_plan(const mp1map::DeviceSummary& device) {
         add_variants(plan, base);
         add_resolutions(plan, base);
     }
-    for (const auto& base : {fast, paper}) add_compute_units(plan, base, device.compute_units);
+    for (const auto& base : {fast, paper}) add_compute_units(plan, base, device);
     return plan;
 }
 

@@ -69,11 +69,13 @@ void read_plan() {
     g_plan.known = true;
 }
 
-// What drivers and compilers call for themselves is theirs to handle.
+// What drivers and compilers call for themselves is theirs to handle; libstdc++ calls malloc for
+// what exceptions are made of, and for `new`, which fails by its own name.
 bool is_ours(void* caller) {
     dl_find_object from;  // dladdr would look for the symbol, in LLVM for a millisecond
     if (_dl_find_object(caller, &from) != 0) return true;
-    for (const char* theirs : {"pocl", "OpenCL", "LLVM", "clang", "hwloc", "/libc.so", "/ld-"})
+    for (const char* theirs :
+         {"pocl", "OpenCL", "LLVM", "clang", "hwloc", "/libstdc++", "/libc.so", "/ld-"})
         if (std::strstr(from.dlfo_link_map->l_name, theirs) != nullptr) return false;
     return true;
 }

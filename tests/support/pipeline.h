@@ -32,11 +32,25 @@ inline std::ostream& operator<<(std::ostream& out, const Shape& shape) {
     return out << name_of(shape);
 }
 
+inline bool takes(const mp1map::DeviceSummary& device, const Shape& shape) {
+    try {
+        mp1map::fit_pe_array(device, shape.request());
+        return true;
+    } catch (const mp1map::NoSuchDevice&) {
+        return false;
+    }
+}
+
+/// Those that the default device takes: PoCL all of them, a GPU no groups of 64 x 64.
 inline const std::vector<Shape>& shapes() {
-    static const std::vector<Shape> all = {{4, 1, 16, 64, 64},  {8, 8, 1, 64, 64},
-                                           {16, 16, 4, 64, 64}, {32, 32, 1, 32, 32},
-                                           {64, 64, 1, 64, 64}, {2, 3, 8, 48, 33}};
-    return all;
+    static const std::vector<Shape> taken = [] {
+        const auto device = mp1map::Device::open("").summary();
+        std::vector<Shape> all = {{4, 1, 16, 64, 64},  {8, 8, 1, 64, 64},   {16, 16, 4, 64, 64},
+                                  {32, 32, 1, 32, 32}, {64, 64, 1, 64, 64}, {2, 3, 8, 48, 33}};
+        std::erase_if(all, [&](const Shape& shape) { return !takes(device, shape); });
+        return all;
+    }();
+    return taken;
 }
 
 /// Where steps of the device's grid lie in the normalised scene.
