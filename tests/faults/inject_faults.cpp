@@ -69,14 +69,16 @@ void read_plan() {
     g_plan.known = true;
 }
 
-// What drivers and compilers call for themselves is theirs to handle; libstdc++ calls malloc for
-// what exceptions are made of, and for `new`, which fails by its own name.
-bool is_ours(void* caller) {
+bool is_of(const char* library, void* caller) {
     dl_find_object from;  // dladdr would look for the symbol, in LLVM for a millisecond
-    if (_dl_find_object(caller, &from) != 0) return true;
-    for (const char* theirs :
-         {"pocl", "OpenCL", "LLVM", "clang", "hwloc", "/libstdc++", "/libc.so", "/ld-"})
-        if (std::strstr(from.dlfo_link_map->l_name, theirs) != nullptr) return false;
+    return _dl_find_object(caller, &from) == 0 &&
+           std::strstr(from.dlfo_link_map->l_name, library) != nullptr;
+}
+
+// What drivers and compilers call for themselves is theirs to handle.
+bool is_ours(void* caller) {
+    for (const char* theirs : {"pocl", "OpenCL", "LLVM", "clang", "hwloc", "/libc.so", "/ld-"})
+        if (is_of(theirs, caller)) return false;
     return true;
 }
 
@@ -276,7 +278,8 @@ extern "C" ssize_t writev(int file, const iovec* parts, int count) {
 
 extern "C" void* malloc(std::size_t size) {
     static Function function{"malloc", ENOMEM};
-    if (!fails(function, CALLER)) return __libc_malloc(size);
+    // Exceptions are made of it: where they cannot be, nobody can be told of anything.
+    if (is_of("/libstdc++", CALLER) || !fails(function, CALLER)) return __libc_malloc(size);
     fail_with_errno(function);
     return nullptr;
 }
