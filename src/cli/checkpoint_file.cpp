@@ -12,6 +12,7 @@
 #include "cli/text.h"
 #include "errors.h"
 #include "lightmap/atomic_file.h"
+#include "scene/printable.h"
 
 namespace hemirad {
 namespace {
@@ -26,7 +27,7 @@ constexpr std::string_view kFormat = "1";
 constexpr std::size_t kDigits = 64;  // of a SHA-256
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& reason) {
-    throw InputError(file.string() + ": " + reason);
+    throw InputError(printable(file.string() + ": " + reason));
 }
 
 Json json_of(const SolveIdentity& identity) {

@@ -11,6 +11,8 @@
 
 #include "errors.h"
 #include "lightmap/chart_layout.h"
+#include "lightmap/exr_header.h"
+#include "scene/input_file.h"
 #include "scene/printable.h"
 
 namespace hemirad {
@@ -134,6 +136,8 @@ std::map<std::string, std::string> texts_in(const Imf::Header& header) {
 
 ExrLightmap read_exr(const std::filesystem::path& path, const std::vector<std::string>& bands) {
     if (!std::filesystem::is_regular_file(path)) fail(path, "no such file");
+    if (const auto name = oversized_attribute(path))
+        fail(path, "attribute " + in_quotes(*name) + " announces more bytes than there are");
     try {
         Imf::InputFile file(path.c_str(), 0);
         ExrLightmap exr{{0, 0, bands, {}, {}}, texts_in(file.header())};

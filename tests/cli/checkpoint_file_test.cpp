@@ -103,6 +103,8 @@ TEST_F(CheckpointFile, SaysWhatIsWrong) {
     EXPECT_EQ(refusal(), "not a checkpoint of hemirad");
     put("hemirad checkpoint 2\nof the future");
     EXPECT_EQ(refusal(), "a checkpoint of format 2; this hemirad reads format 1");
+    put("hemirad checkpoint 1\b\nof a format that steers a terminal");
+    EXPECT_EQ(refusal(), "a checkpoint of format 1\\x08; this hemirad reads format 1");
 }
 
 TEST_F(CheckpointFile, ReplacesNothingButCheckpoints) {

@@ -47,6 +47,16 @@ TEST_F(ReadExr, RefusesMoreTexelsThanItsBytesCanHold) {
                                  std::to_string(exr.size()) + " bytes can hold");
 }
 
+TEST_F(ReadExr, RefusesAnAttributeOfMoreBytesThanTheFile) {
+    std::string exr = small_exr();
+    const std::string name("dataWindow\0box2i\0", 17);
+    const std::int32_t size = 1 << 30;
+    std::memcpy(exr.data() + exr.find(name) + name.size(), &size, sizeof size);
+
+    EXPECT_EQ(fault_of(exr), file("a.exr").string() +
+                                 ": attribute \"dataWindow\" announces more bytes than there are");
+}
+
 TEST_F(ReadExr, TakesTheDensestLightmap) {
     constexpr std::uint32_t kSide = 4096;
     const std::vector<float> dark(std::size_t{kSide} * kSide);
