@@ -5,8 +5,8 @@
 
 namespace hemirad {
 
-/// While one lives, the first SIGINT, SIGTERM or SIGHUP is only noted, so that work can end in good order;
-/// the second leaves the program at once. One at a time.
+/// While one lives, the first SIGINT, SIGTERM or SIGHUP is only noted, so that work can end in good
+/// order; the second leaves the program at once. One at a time.
 class Interrupts {
   public:
     Interrupts();

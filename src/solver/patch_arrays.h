@@ -37,8 +37,8 @@ double unit_scale(const Mesh& mesh);
 /// enough for what their own rounding does.
 std::vector<device::Cluster> clusters_of(const PatchArrays& arrays);
 
-/// Without rims, which only analytic factors look at, all are 0. Throws InputError where the scene's
-/// extent cannot be normalised.
+/// Without rims, which only analytic factors look at, all are 0. Throws InputError where the
+/// scene's extent cannot be normalised.
 PatchArrays patch_arrays(const Mesh& mesh, bool with_rims = true);
 
 /// Empty where every patch shoots for itself.

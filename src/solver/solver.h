@@ -30,8 +30,8 @@ struct SolverSettings {
     double tolerance = 1e-3;  ///< stop where unshot / emitted is below, in every band
     std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
     double time_limit = std::numeric_limits<double>::infinity();  ///< s
-    /// Calls back whenever the shots reach a multiple of one of these, or as soon as those that go at
-    /// once allow, besides a few times a second; 0: not.
+    /// Calls back whenever the shots reach a multiple of one of these, or as soon as those that go
+    /// at once allow, besides a few times a second; 0: not.
     std::vector<std::uint64_t> stop_every = {};
     /// For rows of form factors, see usable_row_bytes(): a shooter whose row is kept need not look
     /// again.
