@@ -1,6 +1,5 @@
 // First level of the sums over all patches that close a shot's analytic form factors: of the
 // factors, and of the doubt about them. block_sums: [station][block][visible, doubtful].
-#include "pe_array.clh"
 #include "progress.clh"
 #include "shared.h"
 #include "sixteen_sums.clh"
@@ -13,8 +12,8 @@ static float block_sum(const __global float* values, int block) {
     return total_of(sums);
 }
 
-__kernel PE_ARRAY void add_up_factors(const __global Shot* salvo, const __global float* all_factors,
-                                      int stride, __global float* all_sums) {
+__kernel void add_up_factors(const __global Shot* salvo, const __global float* all_factors,
+                             int stride, __global float* all_sums) {
     const Part own = own_part(salvo, closing_members(salvo));
     if (own.member < 0) return;
     const int block_count = stride / kReduceBlock;

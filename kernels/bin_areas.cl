@@ -1,14 +1,13 @@
 // Sec. 1.5.5: second half of the counting sort by tile. Each PE writes the slots of its patches
 // to the lists of the tiles they touch, from where prefix_sum says. As PEs hold consecutive patches
 // and keep their order, a list ascends by patch. The places are spent.
-#include "pe_array.clh"
 #include "progress.clh"
 #include "stacks.clh"
 #include "tiles.clh"
 
-__kernel PE_ARRAY void bin_areas(const __global Shot* salvo, const __global Rectangle* rectangles,
-                                 const __global int* projection_count, int depth,
-                                 __global int* places, __global int* lists) {
+__kernel void bin_areas(const __global Shot* salvo, const __global Rectangle* rectangles,
+                        const __global int* projection_count, int depth, __global int* places,
+                        __global int* lists) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     __global int* mine = places + own.place * TILE_COUNT;

@@ -1,14 +1,12 @@
 // Sec. 1.5.5: only areas that a bounding rectangle touches are visited. First half of a counting
 // sort of the patches by tile: each PE counts how many of its patches touch each tile.
 // entries: [station][PE][tile].
-#include "pe_array.clh"
 #include "progress.clh"
 #include "stacks.clh"
 #include "tiles.clh"
 
-__kernel PE_ARRAY void count_areas(const __global Shot* salvo, const __global Rectangle* rectangles,
-                                   const __global int* projection_count, int depth,
-                                   __global int* entries) {
+__kernel void count_areas(const __global Shot* salvo, const __global Rectangle* rectangles,
+                          const __global int* projection_count, int depth, __global int* entries) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     __global int* mine = entries + own.place * TILE_COUNT;

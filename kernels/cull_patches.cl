@@ -2,7 +2,6 @@
 // pe * depth and on, LANES at a time, and stacks those among which one may be visible, in their
 // order. Of most clusters all or none are, which needs no look at each.
 #include "patches.clh"
-#include "pe_array.clh"
 #include "progress.clh"
 #include "stacks.clh"
 
@@ -60,10 +59,10 @@ static int share_visible(const __global Shot* shot, const __global Cluster* clus
                share_before(above - above_by, above + above_by));
 }
 
-__kernel PE_ARRAY void cull_patches(const __global Shot* salvo, const __global Cluster* clusters,
-                                    const __global int* corners, const __global float* normals,
-                                    const __global int* planes, int stride, int depth,
-                                    __global Level* stack, __global int* stack_height) {
+__kernel void cull_patches(const __global Shot* salvo, const __global Cluster* clusters,
+                           const __global int* corners, const __global float* normals,
+                           const __global int* planes, int stride, int depth,
+                           __global Level* stack, __global int* stack_height) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     const __global Shot* shot = salvo + own.member;

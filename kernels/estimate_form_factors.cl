@@ -3,7 +3,6 @@
 // the outline cuts; here only the outlines of what hides a patch matter. Each PE takes the visible
 // patches of its stack, LANES at a time; the counts of the hemisphere are spent.
 #include "patches.clh"
-#include "pe_array.clh"
 #include "plane.clh"
 #include "point_to_polygon.clh"
 #include "progress.clh"
@@ -28,7 +27,8 @@ static float3 normal_at(const Patches* patches, int patch) {
 // A corner of a patch as seen from the hemisphere's centre.
 static float3 corner_at(const __global Shot* shot, const Patches* patches, int k, int patch) {
     const __global int* corners = patches->corners + 3 * k * patches->stride + patch;
-    const int3 corner = (int3)(corners[0], corners[patches->stride], corners[2 * patches->stride]);
+    const int3 corner =
+        (int3)(corners[0], corners[patches->stride], corners[2 * patches->stride]);
     return kGridStep *
            convert_float3(corner - (int3)(shot->origin[0], shot->origin[1], shot->origin[2]));
 }
@@ -83,8 +83,8 @@ static int hidden_middles(const __global Shot* shot, const Patches* patches,
     int hidden = 0;
     for (int rest = asked; rest != 0; rest &= rest - 1) {
         const int lane = lowest_bit(rest), own = patch + lane;
-        const float3 at =
-            (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane), lane_of(middle.z, lane));
+        const float3 at = (float3)(lane_of(middle.x, lane), lane_of(middle.y, lane),
+                                   lane_of(middle.z, lane));
         int last = own;
         for (int k = 0; k < 4; ++k) {
             const int owner = owners[proxel_place(int_lane_of(column, lane) + (k & 1),
@@ -103,11 +103,12 @@ static void add_to(__global float* sums, real_v value) {
     *real_vectors(sums) = load_v(0, sums) + value;
 }
 
-__kernel PE_ARRAY void estimate_form_factors(
-    const __global Shot* salvo, const __global int* corners, const __global float* normals,
-    const __global int* planes, const __global uchar* rims, int stride, int depth,
-    const __global Level* stack, const __global int* stack_height, const __global int* owners,
-    __global int* proxel_counts, __global int* covered_counts, __global float* factors) {
+__kernel void estimate_form_factors(const __global Shot* salvo, const __global int* corners,
+                                    const __global float* normals, const __global int* planes,
+                                    const __global uchar* rims, int stride, int depth,
+                                    const __global Level* stack, const __global int* stack_height,
+                                    const __global int* owners, __global int* proxel_counts,
+                                    __global int* covered_counts, __global float* factors) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     const __global Shot* shot = salvo + own.member;
@@ -123,7 +124,8 @@ __kernel PE_ARRAY void estimate_form_factors(
         const Point middle = middle_of(corner);
         turn_corners(shot, corner);
         const int_v is_visible = lanes_of(level->visible);
-        const real_v unblocked = choose_v(is_visible, point_to_polygon(corner), (real_v)0.0f);
+        const real_v unblocked =
+            choose_v(is_visible, point_to_polygon(corner), (real_v)0.0f);
 
         __global int* count = proxel_count + level->patch;
         __global int* covered = covered_counts + own.station * stride + level->patch;
@@ -131,8 +133,8 @@ __kernel PE_ARRAY void estimate_form_factors(
         const int asked = level->visible & bits_of(all == 0);
         real_v fraction = to_real_v(visible) / to_real_v(max(all, (int_v)1));
         if (asked != 0) {
-            const int hidden = hidden_middles(shot, &patches, plane, level->patch, asked, middle,
-                                              middle_of(corner));
+            const int hidden = hidden_middles(shot, &patches, plane, level->patch, asked,
+                                              middle, middle_of(corner));
             fraction = choose_v(lanes_of(asked & ~hidden), (real_v)1.0f, fraction);
         }
         owned += visible;

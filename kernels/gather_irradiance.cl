@@ -1,9 +1,8 @@
-// Final gather (ours), first level: what blocks of patches send to the points that a salvo looks
-// from. E = sum over patches of F B: a form factor from a point to a patch is what of the patch's
-// radiosity arrives there. The form factors are spent. radiosity: [band][patch]; block_sums:
-// [station][band][block].
+// Final gather (ours), first level: what blocks of patches send to the points that a salvo looks from.
+// E = sum over patches of F B: a form factor from a point to a patch is what of the patch's radiosity
+// arrives there. The form factors are spent.
+// radiosity: [band][patch]; block_sums: [station][band][block].
 #include "form_factors.clh"
-#include "pe_array.clh"
 #include "progress.clh"
 #include "sixteen_sums.clh"
 
@@ -34,10 +33,10 @@ static float sent_by_block(const real_v* form_factor, const __global float* radi
     return total_of(sums);
 }
 
-__kernel PE_ARRAY void gather_irradiance(const __global Shot* salvo, __global int* proxel_counts,
-                                         int disk_proxels, __global float* all_factors, int stride,
-                                         const __global float* radiosity, int band_count,
-                                         __global float* all_sums) {
+__kernel void gather_irradiance(const __global Shot* salvo, __global int* proxel_counts,
+                                int disk_proxels, __global float* all_factors, int stride,
+                                const __global float* radiosity, int band_count,
+                                __global float* all_sums) {
     const Part own = own_part(salvo, closing_members(salvo));
     if (own.member < 0) return;
     const int block_count = stride / kReduceBlock;

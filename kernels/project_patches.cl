@@ -6,16 +6,15 @@
 #include "coverage.clh"
 #include "evaluate.clh"
 #include "hemisphere.clh"
-#include "pe_array.clh"
 #include "plane.clh"
 #include "progress.clh"
 #include "sum_form_factors.clh"
 
 // Diffuses patches of the tile's list to the array: one, a batch, or a level of the stacks at a
 // time (BROADCAST_PATCHES).
-static void broadcast(const __global Projection* projections, const __global Rectangle* rectangles,
-                      const __global int* list, int count, int pe, __local Projection* batch,
-                      __local Rectangle* batch_rectangles) {
+static void broadcast(const __global Projection* projections,
+                      const __global Rectangle* rectangles, const __global int* list, int count,
+                      int pe, __local Projection* batch, __local Rectangle* batch_rectangles) {
     for (int k = pe; k < count; k += PE_COUNT) {
         batch[k] = projections[list[k]];
         batch_rectangles[k] = rectangles[list[k]];
@@ -47,8 +46,8 @@ static void project(const __local Projection* patch, const __local Rectangle* of
     const int last = last_area_row(of->rows, tile, pe);
     const float v_first = row_centre(proxel_row(tile, first, pe));
     real_v edge[CORNERS];
-    UNROLLED for (int k = 0; k < CORNERS; ++k) edge[k] =
-        first_linear(patch->edge[k][0], patch->edge[k][1], kEdgeMargin, u, v_first);
+    UNROLLED for (int k = 0; k < CORNERS; ++k)
+        edge[k] = first_linear(patch->edge[k][0], patch->edge[k][1], kEdgeMargin, u, v_first);
     real_v depth_linear = first_depth(patch->depth, u, v_first);
 
     for (int area_row = first; area_row <= last; ++area_row) {
@@ -58,13 +57,14 @@ static void project(const __local Projection* patch, const __local Rectangle* of
         const real_v root = roots[at], nearest = depth[at];
         int_v least = INT_MAX;
         UNROLLED for (int k = 0; k < CORNERS; ++k) {
-            least = min(least,
-                        as_int_v(value_at(patch->edge[k][1], patch->edge[k][2], edge[k], v, root)));
+            least = min(least, as_int_v(value_at(patch->edge[k][1], patch->edge[k][2], edge[k], v,
+                                                 root)));
             edge[k] = next_linear(edge[k], patch->edge[k][1]);
         }
         const int_v inside = at_least_v(least, (int_v)0) & in_columns & is_in(row, of->rows);
         const int_v certain = well_inside(least, inside);
-        const real_v distance = value_at(patch->depth[1], patch->depth[2], depth_linear, v, root);
+        const real_v distance =
+            value_at(patch->depth[1], patch->depth[2], depth_linear, v, root);
         depth_linear = next_linear(depth_linear, patch->depth[1]);
         const int_v nearer = inside & less_v(distance, nearest);
         depth[at] = choose_v(nearer, distance, nearest);
@@ -86,13 +86,12 @@ static void clear_plane(int pe, int escaped, const __global real_v* roots, __loc
     }
 }
 
-__kernel PE_ARRAY void project_patches(const __global Shot* salvo, const __global real_v* roots,
-                                       const __global Projection* projections,
-                                       const __global Rectangle* rectangles,
-                                       const __global int* list_ends, const __global int* lists,
-                                       uint capacity, int escaped, __global int* proxel_counts,
-                                       __global int* covered_counts, __global int_v* owners,
-                                       __global uint* activity_totals) {
+__kernel void project_patches(const __global Shot* salvo, const __global real_v* roots,
+                              const __global Projection* projections,
+                              const __global Rectangle* rectangles, const __global int* list_ends,
+                              const __global int* lists, uint capacity, int escaped,
+                              __global int* proxel_counts, __global int* covered_counts,
+                              __global int_v* owners, __global uint* activity_totals) {
     __local real_v depth[TILE_VECTORS];
     __local int_v owner[TILE_VECTORS];
     __local Projection batch[BROADCAST_PATCHES];

@@ -3,7 +3,6 @@
 // rectangle holds no proxel's centre are left out.
 #include "clip.clh"
 #include "patches.clh"
-#include "pe_array.clh"
 #include "progress.clh"
 #include "stacks.clh"
 
@@ -111,9 +110,9 @@ static int_v claims(const Projections* of, int_v column, int_v row) {
 }
 
 // Whether the patch may own a proxel: its rectangle has some (the empty range is 1) and, where they
-// are no more than 2 x 2, one lies inside the outline. In a scene of a million patches, four of
-// five that the shooter might see lie between the proxels. The paper's machine projects them; so it
-// is where its areas are counted, and where further areas have other bits than these.
+// are no more than 2 x 2, one lies inside the outline. In a scene of a million patches, four of five
+// that the shooter might see lie between the proxels. The paper's machine projects them; so it is
+// where its areas are counted, and where further areas have other bits than these.
 static int_v has_proxels(const Projections* of) {
     const int_v some = ~equal_v(of->columns, (int_v)1) & ~equal_v(of->rows, (int_v)1);
 #if defined(EVALUATE_INCREMENTAL) || defined(COUNT_ACTIVITY)
@@ -128,13 +127,11 @@ static int_v has_proxels(const Projections* of) {
 #endif
 }
 
-__kernel PE_ARRAY void set_up_projection(const __global Shot* salvo, const __global int* corners,
-                                         const __global float* normals, int stride, int depth,
-                                         const __global Level* stack,
-                                         const __global int* stack_height,
-                                         __global Projection* projections,
-                                         __global Rectangle* rectangles,
-                                         __global int* projection_count) {
+__kernel void set_up_projection(const __global Shot* salvo, const __global int* corners,
+                                const __global float* normals, int stride, int depth,
+                                const __global Level* stack, const __global int* stack_height,
+                                __global Projection* projections,
+                                __global Rectangle* rectangles, __global int* projection_count) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     const __global Shot* shot = salvo + own.member;

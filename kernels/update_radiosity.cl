@@ -1,11 +1,11 @@
 // Sec. 1.5.4: every patch adds the flux that its form factor brings it, by the reciprocity of
 // eq. 1.1: F_ji B_i A_j = F_ij A_i B_i, so fluxes need no areas. A shooter's row of form factors is
-// what its hemispheres counted, or what an earlier shot of it left in `rows`. Nothing is done
-// before the last hemisphere of all that shoot at once. rows: [row][patch]. received,
-// received_rest: [band][patch]; shot_flux: [shooter][band]; flux in normalised units.
+// what its hemispheres counted, or what an earlier shot of it left in `rows`. Nothing is done before
+// the last hemisphere of all that shoot at once.
+// rows: [row][patch]. received, received_rest: [band][patch]; shot_flux: [shooter][band]; flux in
+// normalised units.
 #include "compensated.clh"
 #include "form_factors.clh"
-#include "pe_array.clh"
 #include "salvo.clh"
 
 // A member's form factors to LANES patches; those that were not known are spent.
@@ -63,14 +63,15 @@ static void add_owned(const int* owned, int stride, __global int* proxel_counts)
                        owned[station]);
 }
 
-__kernel PE_ARRAY void update_radiosity(const __global Shot* salvo, const __global float* shot_flux,
-                                        __global int* proxel_counts, int disk_proxels,
-                                        __global float* factors, int stride, __global float* rows,
-                                        __global float* received, __global float* received_rest) {
+__kernel void update_radiosity(const __global Shot* salvo, const __global float* shot_flux,
+                               __global int* proxel_counts, int disk_proxels,
+                               __global float* factors, int stride, __global float* rows,
+                               __global float* received, __global float* received_rest) {
     if (!is_shooting(salvo)) return;
     const int size = salvo_size(salvo), shooters = shooter_count(salvo);
     int owned[SALVO] = {0};
-    for (int block = get_global_id(0); block < stride / kReduceBlock; block += get_global_size(0))
+    for (int block = get_global_id(0); block < stride / kReduceBlock;
+         block += get_global_size(0))
         for (int step = 0; step < BLOCK_VECTORS; ++step) {
             const int patch = block * kReduceBlock + step * LANES;
             real_v form_factor[SALVO];

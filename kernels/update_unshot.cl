@@ -1,10 +1,9 @@
 // Sec. 1.5.4: what the shots' flux leaves to be shot. A shooter has none left but what it and those
-// that shoot at once sent to it. Each PE then reduces the unshot flux of its blocks, the first
-// level of the choice of the most energetic shooter. With TWO_LEVELS (Cohen et al.) a shooter is a
-// group of patches, their elements, and reflects what all of these received. rows: [row][patch].
-// unshot, reflectance: [band][shooter]; flux in normalised units. first_patch: [shooter], and one
-// more. block_unshot: [block][band].
-#include "pe_array.clh"
+// that shoot at once sent to it. Each PE then reduces the unshot flux of its blocks, the first level
+// of the choice of the most energetic shooter. With TWO_LEVELS (Cohen et al.) a shooter is a group of
+// patches, their elements, and reflects what all of these received.
+// rows: [row][patch]. unshot, reflectance: [band][shooter]; flux in normalised units.
+// first_patch: [shooter], and one more. block_unshot: [block][band].
 #include "salvo.clh"
 
 #ifdef TWO_LEVELS
@@ -77,8 +76,8 @@ static void reduce(const __global Shot* salvo, int size, const real_v* form_fact
     for (int band = 0; band < BANDS; ++band) {
         const int at = band * shooter_stride + shooter;
         const real_v kept = choose_v(shot, (real_v)0.0f, load_v(at, unshot));
-        const real_v left =
-            fma(load_v(at, reflectance), flux_to(form_factor, size, shot_flux, band), kept);
+        const real_v left = fma(load_v(at, reflectance),
+                                flux_to(form_factor, size, shot_flux, band), kept);
         *real_vectors(unshot + at) = left;
         energy = fma((real_v)band_weight[band], left, energy);
         reduction->sums[band][step % ACCUMULATORS] += left;
@@ -98,13 +97,11 @@ static void end_reduction(const Reduction* reduction, int block, __global BlockS
         block_unshot[block * BANDS + band] = total_of(reduction->sums[band]);
 }
 
-__kernel PE_ARRAY void update_unshot(const __global Shot* salvo, const __global float* shot_flux,
-                                     const __global float* rows, int stride,
-                                     const __global int* first_patch, int shooter_stride,
-                                     __global float* unshot, const __global float* reflectance,
-                                     const __global float* band_weight,
-                                     __global BlockSummary* summaries,
-                                     __global float* block_unshot) {
+__kernel void update_unshot(const __global Shot* salvo, const __global float* shot_flux,
+                            const __global float* rows, int stride, const __global int* first_patch,
+                            int shooter_stride, __global float* unshot,
+                            const __global float* reflectance, const __global float* band_weight,
+                            __global BlockSummary* summaries, __global float* block_unshot) {
     if (!is_shooting(salvo)) return;
     const int size = shooter_count(salvo);
     for (int block = get_global_id(0); block < shooter_stride / kReduceBlock;
@@ -115,8 +112,8 @@ __kernel PE_ARRAY void update_unshot(const __global Shot* salvo, const __global 
             const int shooter = block * kReduceBlock + step * LANES;
             real_v form_factor[SALVO];
             for (int member = 0; member < size; ++member)
-                form_factor[member] =
-                    form_factor_to(rows + (size_t)salvo[member].row * stride, first_patch, shooter);
+                form_factor[member] = form_factor_to(rows + (size_t)salvo[member].row * stride,
+                                                     first_patch, shooter);
             reduce(salvo, size, form_factor, shot_flux, shooter, step, shooter_stride, unshot,
                    reflectance, band_weight, &reduction);
         }
