@@ -109,20 +109,12 @@ std::string names_of(const std::vector<Found>& found) {
 }
 
 const Found& first_choice(const std::vector<Found>& found) {
-    const auto pocl_cpu = [](const Found& one) {
-        return one.summary.lacks.empty() && one.summary.is_cpu &&
-               lower(one.summary.platform).find("portable") != std::string::npos;
+    const auto merit = [](const Found& one) {
+        if (!one.summary.lacks.empty()) return 0;
+        if (!one.summary.is_cpu) return 1;
+        return lower(one.summary.platform).find("portable") == std::string::npos ? 2 : 3;
     };
-    const auto cpu = [](const Found& one) {
-        return one.summary.lacks.empty() && one.summary.is_cpu;
-    };
-    const auto any = [](const Found& one) { return one.summary.lacks.empty(); };
-    if (const auto it = std::find_if(found.begin(), found.end(), pocl_cpu); it != found.end())
-        return *it;
-    if (const auto it = std::find_if(found.begin(), found.end(), cpu); it != found.end())
-        return *it;
-    const auto it = std::find_if(found.begin(), found.end(), any);
-    return it != found.end() ? *it : found.front();
+    return *std::ranges::max_element(found, {}, merit);  // the first of the best
 }
 
 const Found& choose(const std::vector<Found>& found, const std::string& selector) {
@@ -205,11 +197,12 @@ Device Device::open(const std::string& selector, std::uint32_t compute_units) {
     if (compute_units > summary.compute_units)
         throw NoSuchDevice("--compute-units " + std::to_string(compute_units) + ": " +
                            summary.name + " has " + std::to_string(summary.compute_units));
-    if (compute_units != 0 && compute_units < summary.compute_units && !summary.is_divisible)
+    const bool is_part = compute_units != 0 && compute_units < summary.compute_units;
+    if (is_part && !summary.is_divisible)
         throw NoSuchDevice("--compute-units " + std::to_string(compute_units) + ": " +
                            summary.name + " cannot be divided");
     try {
-        if (compute_units != 0 && compute_units < summary.compute_units) {
+        if (is_part) {
             device = divided(device, compute_units);
             summary.compute_units = compute_units;
         }

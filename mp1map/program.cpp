@@ -28,16 +28,13 @@ std::string first_error(const std::string& log) {
     return log.substr(begin, log.find('\n', at) - begin);
 }
 
-cl::Kernel kernel_of(const cl::Program& program, const std::string& name) {
+Kernel kernel_of(const cl::Program& program, const std::string& name, const Device& device) {
     try {
-        return cl::Kernel(program, name.c_str());
+        const cl::Kernel kernel(program, name.c_str());
+        return {name, kernel, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.handle())};
     } catch (const cl::Error& error) {
         throw DeviceError("kernel " + name + ": " + failure_text(error));
     }
-}
-
-Kernel described(const std::string& name, const cl::Kernel& kernel, const Device& device) {
-    return {name, kernel, kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.handle())};
 }
 
 cl::Program built(const Device& device, const std::string& source, const std::string& options) {
@@ -61,8 +58,7 @@ std::map<std::string, Kernel> build_kernels(const Device& device,
     try {
         const cl::Program program = built(device, source, options);
         std::map<std::string, Kernel> kernels;
-        for (const auto& name : names)
-            kernels.emplace(name, described(name, kernel_of(program, name), device));
+        for (const auto& name : names) kernels.emplace(name, kernel_of(program, name, device));
         return kernels;
     } catch (const cl::Error& error) {
         throw DeviceError(device.summary().name + ": kernels: " + failure_text(error));
