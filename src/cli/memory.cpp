@@ -12,6 +12,7 @@
 #include "errors.h"
 #include "solver/bands.h"
 #include "solver/gather.h"
+#include "solver/patch_arrays.h"
 
 namespace hemirad {
 namespace {
@@ -35,11 +36,6 @@ constexpr std::uint64_t kPreviewBytes = 6;
 
 std::uint64_t whole_pages(std::uint64_t bytes) {
     return (bytes + kHugePage - 1) / kHugePage * kHugePage;
-}
-
-bool has_triangles_only(const Mesh& mesh) {
-    return std::ranges::all_of(mesh.patches,
-                               [](const Patch& patch) { return patch.is_triangle(); });
 }
 
 std::uint64_t texels_of(const Atlas& atlas) { return std::uint64_t{atlas.width} * atlas.height; }
@@ -78,9 +74,9 @@ MemoryParts on_device(const Mesh& mesh, const SolveOptions& options,
     const auto with_rows = [&](std::uint64_t row_bytes) {
         return estimated_device_bytes(
             static_cast<std::uint32_t>(patches), static_cast<std::uint32_t>(shooters),
-            has_triangles_only(mesh) ? 3 : 4, plan_bands(mesh, solver.parts).solved.size(),
-            resolution, solver.form_factor, row_bytes,
-            mp1map::fit_pe_array(device, solver.pe_array), salvo, solver.count_shots);
+            corner_count_of(mesh), plan_bands(mesh, solver.parts).solved.size(), resolution,
+            solver.form_factor, row_bytes, mp1map::fit_pe_array(device, solver.pe_array), salvo,
+            solver.count_shots);
     };
     const std::uint64_t plain = with_rows(0);
     const std::uint64_t rows =
@@ -221,8 +217,8 @@ std::string memory_text(const MemoryEstimate& estimate) {
             text += text.empty() ? ": " : ", ";
             text += part.name + " " + bytes_text(part.bytes);
         }
-    return "memory about " + bytes_text(estimate.bytes()) + text +
-           "; where kernels are compiled, " + bytes_text(estimate.compiler_bytes) + " more";
+    return "about " + bytes_text(estimate.bytes()) + text + "; where kernels are compiled, " +
+           bytes_text(estimate.compiler_bytes) + " more";
 }
 
 std::uint64_t available_memory() {

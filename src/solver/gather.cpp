@@ -146,11 +146,10 @@ std::optional<std::vector<std::vector<double>>> Gather::irradiance(
 std::uint64_t gather_bytes(const Mesh& mesh, std::size_t bands, const GatherSettings& settings,
                            const mp1map::DeviceSummary& device) {
     const auto patches = static_cast<std::uint32_t>(mesh.patches.size());
-    const bool triangles =
-        std::ranges::all_of(mesh.patches, [](const Patch& patch) { return patch.is_triangle(); });
-    return estimated_device_bytes(
-               patches, patches, triangles ? 3 : 4, 1, settings.resolution, settings.form_factor, 0,
-               mp1map::fit_pe_array(device, settings.pe_array), points_at_once(mesh, settings)) +
+    return estimated_device_bytes(patches, patches, corner_count_of(mesh), 1, settings.resolution,
+                                  settings.form_factor, 0,
+                                  mp1map::fit_pe_array(device, settings.pe_array),
+                                  points_at_once(mesh, settings)) +
            4 * bands * patches;
 }
 

@@ -39,12 +39,6 @@ double normalising_scale(const Extent& extent) {
     return std::ldexp(1.0, 1 - fraction < kGridStep ? -exponent - 1 : -exponent);
 }
 
-bool only_triangles(const Mesh& mesh) {
-    const auto is_triangle = [](const auto& of) { return of.corners[3] == of.corners[2]; };
-    return std::ranges::all_of(mesh.patches, is_triangle) &&
-           std::ranges::all_of(mesh.shooters, is_triangle);
-}
-
 std::array<std::int32_t, 3> on_grid(const glm::dvec3& normalised) {
     std::array<std::int32_t, 3> steps{};
     for (int axis = 0; axis < 3; ++axis)
@@ -134,10 +128,17 @@ std::vector<device::Cluster> clusters_of(const PatchArrays& arrays) {
     return clusters;
 }
 
+std::uint32_t corner_count_of(const Mesh& mesh) {
+    const auto is_triangle = [](const auto& of) { return of.corners[3] == of.corners[2]; };
+    const bool only_triangles = std::ranges::all_of(mesh.patches, is_triangle) &&
+                                std::ranges::all_of(mesh.shooters, is_triangle);
+    return only_triangles ? 3 : 4;
+}
+
 PatchArrays patch_arrays(const Mesh& mesh, bool with_rims) {
     const Extent extent = extent_of(mesh);
     PatchArrays arrays;
-    arrays.corner_count = only_triangles(mesh) ? 3 : 4;
+    arrays.corner_count = corner_count_of(mesh);
     arrays.centre = 0.5 * extent.least + 0.5 * extent.most;
     arrays.scale = normalising_scale(extent);
     store_polygons(arrays, mesh, mesh.patches);

@@ -37,6 +37,9 @@ double unit_scale(const Mesh& mesh);
 /// enough for what their own rounding does.
 std::vector<device::Cluster> clusters_of(const PatchArrays& arrays);
 
+/// Corners a polygon on the device: 3 where there are only triangles, else 4.
+std::uint32_t corner_count_of(const Mesh& mesh);
+
 /// Without rims, which only analytic factors look at, all are 0. Throws InputError where the
 /// scene's extent cannot be normalised.
 PatchArrays patch_arrays(const Mesh& mesh, bool with_rims = true);
