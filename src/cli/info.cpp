@@ -120,7 +120,8 @@ void print_lights(std::ostream& out, const Mesh& mesh, Lights wanted) {
     if (names.size() > kInFull) out << "  and " << names.size() - kInFull << " more\n";
 }
 
-void print_memory(std::ostream& out, const Scene& scene, const Mesh& mesh, SolveOptions options) {
+void print_memory(std::ostream& out, const Scene& scene, const Mesh& mesh,
+                  const SolveOptions& options) {
     if (mp1map::list_devices().empty()) {
         out << "memory       no device to estimate it for\n";
         return;
@@ -130,8 +131,7 @@ void print_memory(std::ostream& out, const Scene& scene, const Mesh& mesh, Solve
     const auto limit = options.memory_limit.value_or(available_memory());
     out << "device       " << printable(device.summary().name) << ", "
         << bytes_text(device.summary().global_memory) << '\n'
-        << "memory       "
-        << memory_text(estimate_memory(mesh, layout, options, device.summary())).substr(7)
+        << "memory       " << memory_text(estimate_memory(mesh, layout, options, device.summary()))
         << "; free " << bytes_text(limit) << '\n';
 }
 

@@ -32,7 +32,7 @@ struct MemoryEstimate {
     std::uint64_t bytes() const { return total(parts); }
 };
 
-/// One line: the sum, then the parts.
+/// One line: "about " the sum, then the parts.
 std::string memory_text(const MemoryEstimate& estimate);
 
 /// Of a solve that shoots until it has converged, or for max_shots.

@@ -155,7 +155,7 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
     ProgressiveSolver solver(work.mesh, options.solver, device);
     if (!options.quiet) {
         print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
-        std::cerr << memory_text(work.memory) << '\n';
+        std::cerr << "memory " << memory_text(work.memory) << '\n';
     }
     Outcome outcome;
     outcome.resumed_shots = resume(solver, work, options);

@@ -271,15 +271,19 @@ void add_talk_options(CLI::App& command, SolveOptions& options) {
     add_flag(command, "--no-progress", options.no_progress, "no progress bar or lines");
 }
 
-}  // namespace
-
-void add_solve_options(CLI::App& command, SolveOptions& options) {
-    add_file_options(command, options);
+void add_work_options(CLI::App& command, SolveOptions& options) {
     add_accuracy_options(command, options);
     add_chart_options(command, options.charts);
     add_gather(command, options);
     add_stop_options(command, options.solver);
     add_memory_limit(command, options.memory_limit);
+}
+
+}  // namespace
+
+void add_solve_options(CLI::App& command, SolveOptions& options) {
+    add_file_options(command, options);
+    add_work_options(command, options);
     add_checkpoint_options(command, options);
     add_picture_options(command, options);
     add_machine_options(command, options);
@@ -288,11 +292,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
 
 void add_cost_options(CLI::App& command, SolveOptions& options) {
     add_scene(command, options.scene);
-    add_accuracy_options(command, options);
-    add_chart_options(command, options.charts);
-    add_gather(command, options);
-    add_stop_options(command, options.solver);
-    add_memory_limit(command, options.memory_limit);
+    add_work_options(command, options);
     add_pixel_options(command, options);
     add_machine_options(command, options);
 }
