@@ -129,4 +129,9 @@ const std::map<std::string, std::pair<double, std::uint64_t>>& Acu::kernel_secon
     return seconds_;
 }
 
+void Acu::forget_seconds() {
+    collect();
+    seconds_.clear();
+}
+
 }  // namespace mp1map

@@ -29,8 +29,8 @@ set(public_headers
     errors.h
     scene/lights.h scene/mesh.h scene/read_scene.h scene/scene.h
     formfactor/form_factors.h
-    solver/bands.h solver/near_pairs.h solver/patch_arrays.h solver/shot_pipeline.h solver/solution.h
-    solver/solve_state.h solver/solver.h
+    solver/bands.h solver/forecast.h solver/near_pairs.h solver/patch_arrays.h
+    solver/shot_pipeline.h solver/solution.h solver/solve_state.h solver/solver.h
     solver/view_factors.h
     lightmap/atomic_file.h lightmap/chart_layout.h lightmap/lightmap.h
     lightmap/lightmap_uvs.h lightmap/rasterize.h

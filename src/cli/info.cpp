@@ -9,6 +9,7 @@
 #include "cli/memory.h"
 #include "cli/mesh_options.h"
 #include "cli/solve_options.h"
+#include "cli/stopwatch.h"
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -16,7 +17,9 @@
 #include "mp1map/pe_array.h"
 #include "scene/printable.h"
 #include "scene/read_scene.h"
+#include "solver/accuracy.h"
 #include "solver/bands.h"
+#include "solver/solver.h"
 
 namespace hemirad {
 namespace {
@@ -120,8 +123,44 @@ void print_lights(std::ostream& out, const Mesh& mesh, Lights wanted) {
     if (names.size() > kInFull) out << "  and " << names.size() - kInFull << " more\n";
 }
 
-void print_memory(std::ostream& out, const Scene& scene, const Mesh& mesh,
-                  const SolveOptions& options) {
+/// Seconds before the first shot, kernels from the cache, and of shooting.
+struct TimeEstimate {
+    double preparing = 0;
+    Forecast shooting;
+};
+
+TimeEstimate estimate_time(const Mesh& mesh, const SolverSettings& settings,
+                           const mp1map::Device& device) {
+    const Stopwatch watch;
+    ProgressiveSolver solver(mesh, settings, device);
+    const double preparing = watch.seconds() - solver.build_seconds();
+    return {preparing, *solver.forecast()};
+}
+
+/// Why nothing can be foretold, if so.
+std::optional<std::string> doubt_of_time(const Mesh& mesh, const SolveOptions& options,
+                                         const MemoryEstimate& memory, std::uint64_t limit) {
+    if (!emits_light(mesh)) return "nothing emits light, so there is nothing to solve";
+    if (options.target_error) return "--target-error: as many solves as it needs";
+    if (options.mesh.split_levels > 0) return "--split: several solves, of meshes not known yet";
+    if (memory.bytes() + memory.compiler_bytes > limit) return "not enough memory to find out";
+    return {};
+}
+
+void print_time(std::ostream& out, const std::string& what, const Mesh& mesh,
+                const SolverSettings& settings, const mp1map::Device& device) {
+    out << what;
+    try {
+        const auto estimate = estimate_time(mesh, settings, device);
+        out << time_text(estimate.shooting) << "; " << duration_text(estimate.preparing)
+            << " before\n";
+    } catch (const InputError& fault) {
+        out << printable(fault.what()) << '\n';
+    }
+}
+
+void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
+                const SolveOptions& options) {
     if (mp1map::list_devices().empty()) {
         out << "memory       no device to estimate it for\n";
         return;
@@ -129,10 +168,17 @@ void print_memory(std::ostream& out, const Scene& scene, const Mesh& mesh,
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     const auto layout = lay_out_charts(scene, mesh, options.charts);
     const auto limit = options.memory_limit.value_or(available_memory());
+    const auto memory = estimate_memory(mesh, layout, options, device.summary());
     out << "device       " << printable(device.summary().name) << ", "
         << bytes_text(device.summary().global_memory) << '\n'
-        << "memory       " << memory_text(estimate_memory(mesh, layout, options, device.summary()))
-        << "; free " << bytes_text(limit) << '\n';
+        << "memory       " << memory_text(memory) << "; free " << bytes_text(limit) << '\n';
+    if (const auto doubt = doubt_of_time(mesh, options, memory, limit)) {
+        out << "time         " << *doubt << '\n';
+        return;
+    }
+    print_time(out, "time         ", mesh, options.solver, device);
+    if (options.estimate_error)
+        print_time(out, "  and again  ", mesh, for_comparison(options.solver), device);
 }
 
 int print_info(SolveOptions options, std::ostream& out) {
@@ -144,7 +190,7 @@ int print_info(SolveOptions options, std::ostream& out) {
     print_parts(out, mesh, options.mesh.backfaces);
     print_bands(out, mesh);
     print_lights(out, mesh, options.solver.parts.lights);
-    print_memory(out, scene, mesh, options);
+    print_cost(out, scene, mesh, options);
     const auto warnings = warnings_of(scene, mesh);
     out << "warnings     " << warnings.size() << '\n';
     for (const auto& warning : warnings) out << "  " << printable(warning) << '\n';

@@ -46,7 +46,8 @@ struct Outcome {
     mp1map::DeviceSummary device;
     mp1map::PeArray pe_array;
     std::uint64_t device_bytes = 0;
-    MemoryEstimate memory;  ///< as told before the work began
+    MemoryEstimate memory;             ///< as told before the work began
+    std::optional<Forecast> forecast;  ///< as told before the first shot
     std::vector<std::filesystem::path> outputs;
     std::vector<std::string> warnings;
 };

@@ -114,13 +114,16 @@ Json seconds_json(const Outcome& outcome) {
             {"per_stage", stages}};
 }
 
-/// As told before the work began.
+/// As told before the work began; null what was not.
 Json estimate_json(const Outcome& outcome) {
+    const auto& forecast = outcome.forecast;
     Json parts = Json::object();
     for (const MemoryPart& part : outcome.memory.parts) parts[part.name] = part.bytes;
     return {{"memory_bytes", outcome.memory.bytes()},
             {"compiler_bytes", outcome.memory.compiler_bytes},
-            {"memory_parts", parts}};
+            {"memory_parts", parts},
+            {"shots", forecast ? Json(std::round(forecast->shots)) : Json(nullptr)},
+            {"seconds", forecast ? Json(forecast->seconds) : Json(nullptr)}};
 }
 
 Json outputs_json(const Outcome& outcome) {

@@ -149,6 +149,16 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
     });
 }
 
+/// Of a solve that is short, or partly done, or told to nobody, nothing.
+std::optional<Forecast> foretold(ProgressiveSolver& solver, const SolveOptions& options,
+                                 const Interrupts& interrupts) {
+    constexpr double kShort = 10;  // s; by looks one at a time, which take twice as long and more
+    if (options.resume || (options.quiet && !options.report)) return {};
+    const auto forecast = solver.forecast(kShort, [&] { return !interrupts.requested(); });
+    if (forecast && !options.quiet) std::cerr << "time " << time_text(*forecast) << '\n';
+    return forecast;
+}
+
 Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::Device& device,
                    const Interrupts& interrupts) {
     Checkpoints checkpoints(options, checked_identity(work, options, device.summary()));
@@ -158,6 +168,7 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
         std::cerr << "memory " << memory_text(work.memory) << '\n';
     }
     Outcome outcome;
+    outcome.forecast = foretold(solver, options, interrupts);
     outcome.resumed_shots = resume(solver, work, options);
     const Stopwatch solving;
     ShotClock shot_clock(outcome.resumed_shots);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "cli/text.h"
@@ -74,6 +75,13 @@ std::vector<std::string> warnings_of(const Scene& scene, const Mesh& mesh) {
 
 void print_warnings(std::ostream& out, const std::vector<std::string>& warnings) {
     for (const auto& warning : warnings) out << "warning: " << printable(warning) << '\n';
+}
+
+std::string time_text(const Forecast& forecast) {
+    const auto whole = [](double count) { return std::llround(count); };
+    return "about " + duration_text(forecast.seconds) + " for " +
+           counted(static_cast<std::uint64_t>(whole(forecast.shots)), "shot") + ", " +
+           std::to_string(whole(forecast.looks)) + " of them with a look";
 }
 
 void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh,

@@ -20,6 +20,9 @@ void print_warnings(std::ostream& out, const std::vector<std::string>& warnings)
 void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh,
                 const mp1map::DeviceSummary& device, const mp1map::PeArray& array);
 
+/// "about " how long shooting takes, and how many shots that is.
+std::string time_text(const Forecast& forecast);
+
 /// How the solve ended: why, the ledger of every band, closure and files.
 void print_summary(std::ostream& out, const SolveOptions& options, const Outcome& outcome);
 

@@ -565,6 +565,7 @@ void ShotPipeline::set_state(const SolveState& state) {
         throw InputError("no state that a solve comes to");
     auto salvo = std::vector(member_count(), first_shot());
     device::Shot& books = salvo.front();
+    books.rows_kept = shot().rows_kept;
     books.shots = static_cast<std::uint32_t>(state.shots);
     books.repeated_shots = static_cast<std::uint32_t>(state.repeated_shots);
     books.least_surplus = state.least_surplus;

@@ -134,8 +134,8 @@ class ShotPipeline {
 
     /// After the last shot, whatever of the next ones is under way.
     SolveState state();
-    /// Of a pipeline that has not shot yet. A shot at nothing then finds the next shooters. Throws
-    /// InputError where the state is that of other patches or bands.
+    /// A shot at nothing then finds the next shooters, whose rows remain known. Throws InputError
+    /// where the state is that of other patches or bands.
     void set_state(const SolveState& state);
 
     std::vector<double> received();         ///< [band * stride + patch], of the emitted flux
@@ -164,6 +164,7 @@ class ShotPipeline {
     std::uint32_t stride() const { return stride_; }
     std::uint32_t shooter_stride() const { return shooter_stride_; }
     std::uint32_t salvo() const { return salvo_; }
+    std::uint32_t kept_rows() const { return row_capacity_; }  ///< at most
     std::size_t band_count() const { return band_count_; }
     mp1map::Acu& acu() { return acu_; }
     std::uint64_t device_bytes() const { return acu_.allocated_bytes(); }

@@ -43,6 +43,14 @@ std::vector<std::uint32_t> by_patch(const Mesh& mesh, const std::vector<std::uin
     return result;
 }
 
+std::vector<std::uint32_t> shooter_of_patches(const Mesh& mesh) {
+    std::vector<std::uint32_t> result(mesh.patches.size());
+    const auto shooters = shooters_of(mesh);
+    for (std::uint32_t i = 0; i < shooters.size(); ++i)
+        std::fill_n(result.begin() + shooters[i].first_patch, shooters[i].patch_count, i);
+    return result;
+}
+
 double area_of(const Mesh& mesh, const Shooter& shooter) {
     double area = 0;
     for (std::uint32_t i = 0; i < shooter.patch_count; ++i)
@@ -272,6 +280,18 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
         if (!on_progress(progress)) return Stop::interrupted;
         if (progress.seconds >= settings_.time_limit) return Stop::time_limit;
     }
+}
+
+std::optional<Forecast> ProgressiveSolver::forecast(double least_seconds,
+                                                    const std::function<bool()>& go_on) {
+    const PatchLight light = patch_light(mesh_, plan_, pipeline_.shooter_stride());
+    const auto result = hemirad::forecast(
+        pipeline_, {light, shooter_of_patches(mesh_),
+                    static_cast<std::uint32_t>(mesh_.shooter_count()), settings_.tolerance,
+                    settings_.max_shots, least_seconds, go_on});
+    pipeline_.acu().forget_seconds();
+    resume(pipeline_.state());
+    return result;
 }
 
 void ProgressiveSolver::resume(const SolveState& state) {

@@ -14,6 +14,7 @@
 #include "mp1map/pe_array.h"
 #include "scene/mesh.h"
 #include "solver/bands.h"
+#include "solver/forecast.h"
 #include "solver/shot_pipeline.h"
 #include "solver/solution.h"
 
@@ -110,6 +111,12 @@ class ProgressiveSolver {
     /// Shoots until the tolerance or a limit is met, or the callback returns false. May be called
     /// again. A scene that emits nothing has converged.
     Stop solve(const std::function<bool(const Progress&)>& on_progress);
+
+    /// Of solve(), whatever its time limit. To be called first; changes no bit. Nothing of a solve
+    /// that takes less than `least_seconds` for certain, and where `go_on`, asked now and then, says
+    /// no.
+    std::optional<Forecast> forecast(
+        double least_seconds = 0, const std::function<bool()>& go_on = [] { return true; });
 
     /// Goes on from the state() of a solver of the same mesh and the same settings, but for limits
     /// and a tolerance that were not met before: solve() then ends with the bits of one that never

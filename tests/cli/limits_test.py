@@ -86,6 +86,54 @@ class Memory(LimitsTest):
                        "1.5G")
 
 
+class Foretold(LimitsTest):
+    def time_line(self, *options):
+        info = self.run_hemirad("info", SCENES / "cornell.gltf", "--quality", "draft", *options)
+        self.assert_done(info)
+        return re.search(r"^time +(.*)$", info.stdout, re.M).group(1)
+
+    def test_info_tells_time_and_shots(self):
+        line = self.time_line("--patch-size", "0.1")
+        self.assertRegex(line, r"^about \d.* m?s for \d+ shots, \d+ of them with a look; \d.* before$")
+        report, _ = self.report_of("cornell.gltf", "--quality", "draft", "--patch-size", "0.1")
+        told = int(re.search(r"for (\d+) shots", line).group(1))
+        self.assertLess(abs(told / report["shots"] - 1), 0.1)
+
+    def test_a_solve_of_a_second_is_not_foretold(self):
+        report, told = self.report_of("cornell.gltf", "--quality", "draft", "--patch-size", "0.2")
+        self.assertIsNone(report["estimate"]["seconds"])
+        self.assertIsNone(report["estimate"]["shots"])
+        self.assertNotIn("\ntime ", told)
+
+    def test_info_says_why_it_tells_no_time(self):
+        info = self.run_hemirad("info", SCENES / "cornell.gltf", "--target-error", "0.1")
+        self.assertRegex(info.stdout, r"\ntime +--target-error")
+        self.assertIn("--split", self.time_line("--split", "1"))
+        self.assertIn("memory", self.time_line("--memory-limit", "50M"))
+
+
+class Time(LimitsTest):
+    """On a machine that does nothing else."""
+
+    def assert_foretold(self, scene, *options):
+        self.report_of(scene, *options, "--max-shots", "1")  # kernels are compiled
+        info = self.run_hemirad("info", SCENES / scene, *options)
+        told = re.search(r"^time +about ([\d.]+) (ms|s|min) (?:(\d+) s )?for", info.stdout, re.M)
+        seconds = float(told.group(1)) * {"ms": 1e-3, "s": 1, "min": 60}[told.group(2)]
+        seconds += float(told.group(3) or 0)
+        report, _ = self.report_of(scene, *options)
+        took = report["seconds"]["solve"]
+        print(f"{scene} {' '.join(options)}: {seconds:.2f} s told, {took:.2f} s", file=sys.stderr)
+        self.assertLess(abs(seconds / took - 1), 0.25)
+
+    def test_seconds_are_foretold_within_a_quarter(self):
+        for scene in ("cornell.gltf", "furnace.obj", "squares.obj", "lroom.obj", "hall2k.obj",
+                      "hall14k.obj"):
+            for quality in ("draft", "medium"):
+                with self.subTest(scene=scene, quality=quality):
+                    self.assert_foretold(scene, "--quality", quality)
+
+
 class Load(LimitsTest):
     def test_two_million_patches_fit_24_gib(self):
         report, _ = self.report_of("hall14k.obj", "--patch-size", "0.0298", "--quality", "draft",

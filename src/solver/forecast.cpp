@@ -1,0 +1,257 @@
+#include "solver/forecast.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <map>
+
+#include "solver/solver.h"
+
+namespace hemirad {
+namespace {
+
+constexpr std::uint32_t kMostGroups = 256, kLeastMembers = 4, kLeastGroups = 16;
+// Looks in all take about this long at most, whatever the accuracy asked for.
+constexpr double kMostSeconds = 20;
+// Looks are timed so often: in the first turn more than later is new to the machine.
+constexpr std::size_t kTurns = 2;
+
+using Table = std::vector<std::vector<double>>;
+
+using Group = std::vector<std::uint32_t>;  // shooters, in their order
+
+// The member that looks for the others.
+std::uint32_t middle_of(const Group& group) { return group[group.size() / 2]; }
+
+/// Groups, and the flux from each to each.
+struct Exchange {
+    std::vector<Group> groups;
+    Table factor;       // [from][to]
+    Table unshot;       // [band][group], parts of what the band emits
+    Table reflectance;  // [band][group]
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Members of a group reflect alike, and emit or do not.
+std::vector<float> material_of(const PatchLight& light, std::size_t stride, std::uint32_t shooter) {
+    std::vector<float> material;
+    for (std::size_t band = 0; band < light.band_count; ++band) {
+        material.push_back(light.reflectance[band * stride + shooter]);
+        material.push_back(light.emitted[band * stride + shooter] > 0 ? 1.0f : 0.0f);
+    }
+    return material;
+}
+
+std::vector<Group> group_shooters(const PatchLight& light, std::size_t stride,
+                                  std::uint32_t shooters, std::uint32_t wanted) {
+    const std::size_t most = std::max(kLeastMembers, shooters / wanted + 1);
+    std::map<std::vector<float>, std::size_t> open;  // the group of a material that is not full
+    std::vector<Group> groups;
+    for (std::uint32_t shooter = 0; shooter < shooters; ++shooter) {
+        const auto [place, is_new] =
+            open.try_emplace(material_of(light, stride, shooter), groups.size());
+        if (is_new || groups[place->second].size() == most) {
+            place->second = groups.size();
+            groups.emplace_back();
+        }
+        groups[place->second].push_back(shooter);
+    }
+    return groups;
+}
+
+using Pass = void (*)(ShotPipeline&);
+
+/// The pipeline to ask, and its state before its first shot, with the closure of those made to ask.
+struct Asked {
+    ShotPipeline& pipeline;
+    SolveState state;
+};
+
+/// Until these have shot, of equal flux. Returns how many shots that were: fewer where too little
+/// was left to the last ones.
+std::uint32_t let_shoot(Asked& asked, const std::vector<std::uint32_t>& shooters,
+                        Pass pass = shoot) {
+    ShotPipeline& pipeline = asked.pipeline;
+    SolveState state = asked.state;
+    std::ranges::fill(state.unshot, 0.0f);
+    for (std::size_t band = 0; band < pipeline.band_count(); ++band)
+        for (const std::uint32_t shooter : shooters)
+            state.unshot[band * pipeline.shooter_stride() + shooter] =
+                1 / static_cast<float>(shooters.size());
+    pipeline.set_state(state);
+    pipeline.set_shot_limit(shooters.size(), shooters.size());
+    distribute_flux(pipeline);
+    const std::size_t salvos = (shooters.size() + pipeline.salvo() - 1) / pipeline.salvo();
+    device::Shot shot{};
+    do {
+        for (std::size_t i = 0; i < salvos * pipeline.most_parts(); ++i) pass(pipeline);
+        shot = pipeline.shot();
+        if (shot.status == kBinsFull) pipeline.enlarge_lists();
+        pass = shoot;
+    } while (shot.status == kBinsFull || shot.status == kRunning);
+    asked.state.least_surplus = shot.least_surplus;
+    asked.state.most_surplus = shot.most_surplus;
+    return shot.shots;
+}
+
+double seconds_a_shot(Asked& asked, const std::vector<std::uint32_t>& shooters, Pass pass = shoot) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto shots = let_shoot(asked, shooters, pass);
+    return seconds_since(start) / std::max(shots, 1u);
+}
+
+/// What each group's patches receive of one unit that a group's middle shoots.
+std::optional<Table> factors_of(Asked& asked, const ForecastTask& task,
+                                const std::vector<Group>& groups) {
+    std::vector<std::uint32_t> group_of(task.shooters);
+    for (std::uint32_t i = 0; i < groups.size(); ++i)
+        for (const std::uint32_t member : groups[i]) group_of[member] = i;
+    Table factor;
+    for (const Group& group : groups) {
+        if (!task.go_on()) return {};
+        let_shoot(asked, {middle_of(group)});
+        const auto received = asked.pipeline.received();
+        factor.emplace_back(groups.size());
+        for (std::size_t patch = 0; patch < task.shooter_of.size(); ++patch)
+            factor.back()[group_of[task.shooter_of[patch]]] += received[patch];
+    }
+    return factor;
+}
+
+void add_light(const PatchLight& light, std::size_t stride, Exchange& exchange) {
+    for (std::size_t band = 0; band < light.band_count; ++band) {
+        exchange.unshot.emplace_back();
+        exchange.reflectance.emplace_back();
+        for (const Group& group : exchange.groups) {
+            double emitted = 0;
+            for (const std::uint32_t member : group)
+                emitted += light.emitted[band * stride + member];
+            exchange.unshot.back().push_back(emitted);
+            exchange.reflectance.back().push_back(
+                light.reflectance[band * stride + middle_of(group)]);
+        }
+    }
+}
+
+double unshot_fraction(const Exchange& exchange, const PatchLight& light) {
+    double most = 0;
+    for (std::size_t band = 0; band < light.band_count; ++band) {
+        double sum = 0;
+        for (const double flux : exchange.unshot[band]) sum += flux;
+        most = std::max(most, sum * light.band_weight[band]);
+    }
+    return most;
+}
+
+/// Unshot flux of a member, as choose_shooter weighs it.
+double energy_of(const Exchange& exchange, const PatchLight& light, std::size_t group) {
+    double sum = 0;
+    for (std::size_t band = 0; band < light.band_count; ++band)
+        sum += exchange.unshot[band][group] * light.band_weight[band];
+    return sum / static_cast<double>(exchange.groups[group].size());
+}
+
+void shoot_group(Exchange& exchange, std::size_t from) {
+    for (std::size_t band = 0; band < exchange.unshot.size(); ++band) {
+        const double flux = exchange.unshot[band][from];
+        exchange.unshot[band][from] = 0;
+        for (std::size_t to = 0; to < exchange.groups.size(); ++to)
+            exchange.unshot[band][to] +=
+                flux * exchange.factor[from][to] * exchange.reflectance[band][to];
+    }
+}
+
+/// Shots and looks. Rows are kept in the order of their shooters' first shots, as long as there is
+/// room.
+Forecast shoot_groups(Exchange exchange, const ForecastTask& task, double room) {
+    Forecast result;
+    std::vector<std::optional<double>> kept(exchange.groups.size());  // share of the members' rows
+    std::vector<double> energies(exchange.groups.size());
+    const auto most = static_cast<double>(task.max_shots);
+    while (result.shots < most && unshot_fraction(exchange, task.light) >= task.tolerance) {
+        for (std::size_t i = 0; i < energies.size(); ++i)
+            energies[i] = energy_of(exchange, task.light, i);
+        const auto next =
+            static_cast<std::size_t>(std::ranges::max_element(energies) - energies.begin());
+        if (!(energies[next] > std::numeric_limits<float>::min())) break;
+        const auto members = static_cast<double>(exchange.groups[next].size());
+        result.shots += members;
+        result.looks += members * (1 - kept[next].value_or(0));
+        if (!kept[next]) {
+            kept[next] = std::min(1.0, room / members);
+            room -= members * *kept[next];
+        }
+        shoot_group(exchange, next);
+    }
+    result.shots = std::min(result.shots, most);
+    result.looks = std::min(result.looks, most);
+    return result;
+}
+
+/// So that looks, 1 + kTurns a group, take no longer than they may.
+std::uint32_t group_count(double look_seconds) {
+    const double count = kMostSeconds / ((1 + kTurns) * std::max(look_seconds, 1e-9));
+    return static_cast<std::uint32_t>(std::clamp<double>(count, kLeastGroups, kMostGroups));
+}
+
+std::optional<Exchange> exchange_of(Asked& asked, const ForecastTask& task, std::uint32_t groups) {
+    const std::size_t stride = asked.pipeline.shooter_stride();
+    Exchange exchange;
+    exchange.groups = group_shooters(task.light, stride, task.shooters, groups);
+    auto factor = factors_of(asked, task, exchange.groups);
+    if (!factor) return {};
+    exchange.factor = std::move(*factor);
+    add_light(task.light, stride, exchange);
+    return exchange;
+}
+
+/// By members that have not looked yet, in salvos as in a solve; `otherwise` where groups have
+/// none.
+double seconds_a_look(Asked& asked, const std::vector<Group>& groups, double otherwise) {
+    std::optional<double> least;
+    for (std::size_t turn = 0; turn < kTurns; ++turn) {
+        std::vector<std::uint32_t> shooters;
+        for (const Group& group : groups)
+            if (group.size() > 2 * kTurns)
+                shooters.push_back(group[group.size() * (1 + 2 * turn) / (2 * kTurns)]);
+        if (shooters.empty()) return otherwise;
+        const double seconds = seconds_a_shot(asked, shooters);
+        least = std::min(least.value_or(seconds), seconds);
+    }
+    return *least;
+}
+
+double seconds_a_repeat(Asked& asked, const std::vector<Group>& groups) {
+    std::vector<std::uint32_t> middles;
+    for (const Group& group : groups) middles.push_back(middle_of(group));
+    return seconds_a_shot(asked, middles, distribute_flux);
+}
+
+std::optional<Forecast> foretold(Asked& asked, const ForecastTask& task) {
+    let_shoot(asked, {0});  // a first launch takes longer
+    const double look = seconds_a_shot(asked, {task.shooters / 2});
+    const auto most_looks = std::min<std::uint64_t>(task.shooters, task.max_shots);
+    if (look * static_cast<double>(most_looks) < task.least_seconds) return {};
+    const auto exchange = exchange_of(asked, task, group_count(look));
+    if (!exchange) return {};
+    const double room = asked.pipeline.kept_rows();
+    Forecast result = shoot_groups(*exchange, task, room);
+    result.seconds = result.looks * seconds_a_look(asked, exchange->groups, look);
+    if (room >= static_cast<double>(exchange->groups.size()))
+        result.seconds += (result.shots - result.looks) * seconds_a_repeat(asked, exchange->groups);
+    return result;
+}
+
+}  // namespace
+
+std::optional<Forecast> forecast(ShotPipeline& pipeline, const ForecastTask& task) {
+    Asked asked{pipeline, pipeline.state()};
+    const auto result = foretold(asked, task);
+    pipeline.set_state(asked.state);
+    return result;
+}
+
+}  // namespace hemirad
