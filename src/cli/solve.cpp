@@ -152,7 +152,7 @@ Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& opti
 /// Of a solve that is short, or partly done, or told to nobody, nothing.
 std::optional<Forecast> foretold(ProgressiveSolver& solver, const SolveOptions& options,
                                  const Interrupts& interrupts) {
-    constexpr double kShort = 10;  // s; by looks one at a time, which take twice as long and more
+    constexpr double kShort = 40;  // s; by looks one at a time, which take three times as long
     if (options.resume || (options.quiet && !options.report)) return {};
     const auto forecast = solver.forecast(kShort, [&] { return !interrupts.requested(); });
     if (forecast && !options.quiet) std::cerr << "time " << time_text(*forecast) << '\n';

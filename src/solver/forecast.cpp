@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kMostGroups = 256, kLeastMembers = 4, kLeastGroups = 16;
 // Looks in all take about this long at most, whatever the accuracy asked for.
 constexpr double kMostSeconds = 20;
-// Looks are timed so often: in the first turn more than later is new to the machine.
+// Looks are timed so often, and the last time counts: in the first more is new to the machine.
 constexpr std::size_t kTurns = 2;
 
 using Table = std::vector<std::vector<double>>;
@@ -211,17 +211,15 @@ std::optional<Exchange> exchange_of(Asked& asked, const ForecastTask& task, std:
 /// By members that have not looked yet, in salvos as in a solve; `otherwise` where groups have
 /// none.
 double seconds_a_look(Asked& asked, const std::vector<Group>& groups, double otherwise) {
-    std::optional<double> least;
+    double seconds = otherwise;
     for (std::size_t turn = 0; turn < kTurns; ++turn) {
         std::vector<std::uint32_t> shooters;
         for (const Group& group : groups)
             if (group.size() > 2 * kTurns)
                 shooters.push_back(group[group.size() * (1 + 2 * turn) / (2 * kTurns)]);
-        if (shooters.empty()) return otherwise;
-        const double seconds = seconds_a_shot(asked, shooters);
-        least = std::min(least.value_or(seconds), seconds);
+        if (!shooters.empty()) seconds = seconds_a_shot(asked, shooters);
     }
-    return *least;
+    return seconds;
 }
 
 double seconds_a_repeat(Asked& asked, const std::vector<Group>& groups) {

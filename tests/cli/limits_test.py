@@ -124,7 +124,7 @@ class Time(LimitsTest):
         report, _ = self.report_of(scene, *options)
         took = report["seconds"]["solve"]
         print(f"{scene} {' '.join(options)}: {seconds:.2f} s told, {took:.2f} s", file=sys.stderr)
-        self.assertLess(abs(seconds / took - 1), 0.25)
+        self.assertLess(abs(seconds - took), max(took / 4, 0.35))  # below a second launches decide
 
     def test_seconds_are_foretold_within_a_quarter(self):
         for scene in ("cornell.gltf", "furnace.obj", "squares.obj", "lroom.obj", "hall2k.obj",
