@@ -1,11 +1,13 @@
 #include "lightmap/find_hidden.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "scene/disjoint_sets.h"
 
@@ -41,27 +43,90 @@ double distance_to(const Mesh& mesh, const Patch& patch, const glm::dvec3& norma
 
 struct Hit {
     double distance;
-    bool shows_front;
+    std::uint32_t surface;
 };
 
-/// Whether the first thing that a patch has over it, not counting what lies on it, turns its back
-/// on it. The sky does not.
-bool looks_at_backs(const Mesh& mesh, std::uint32_t index) {
-    const Patch& own = mesh.patches[index];
-    const Ray ray{mesh.centroid(own), mesh.surfaces[own.surface].normal};
-    const double least = std::max(4 * mesh.weld, 1e-9 * std::sqrt(mesh.area(own)));
-    std::vector<Hit> hits;
-    for (const Patch& patch : mesh.patches) {
-        const Surface& surface = mesh.surfaces[patch.surface];
-        const double distance = distance_to(mesh, patch, surface.normal, ray);
-        if (distance > least && std::isfinite(distance))
-            hits.push_back(
-                {distance, surface.has_chart && glm::dot(surface.normal, ray.along) < 0});
+/// A point of the patch that is on no line of a grid, nor below or above one.
+glm::dvec3 inner_point(const Mesh& mesh, const Patch& patch) {
+    constexpr std::array<double, 4> kWeights = {0.2871, 0.2393, 0.2637, 0.2099};
+    glm::dvec3 point{};
+    for (std::size_t i = 0; i < 4; ++i) point += kWeights[i] * mesh.vertices[patch.corners[i]];
+    return point;
+}
+
+/// What a ray from a patch meets, in this order, not counting what lies on the patch.
+class Sight {
+  public:
+    Sight(const Mesh& mesh, std::uint32_t index, const glm::dvec3& along)
+        : mesh_(mesh),
+          ray_{inner_point(mesh, mesh.patches[index]), along},
+          least_(std::max(4 * mesh.weld, 1e-9 * std::sqrt(mesh.area(mesh.patches[index])))) {
+        for (const Patch& patch : mesh.patches) {
+            const double distance =
+                distance_to(mesh, patch, mesh.surfaces[patch.surface].normal, ray_);
+            if (distance > least_ && std::isfinite(distance))
+                hits_.push_back({distance, patch.surface});
+        }
+        std::ranges::sort(hits_, {}, &Hit::distance);
+        const auto repeated = std::ranges::unique(hits_, {}, &Hit::surface);
+        hits_.erase(repeated.begin(), repeated.end());
     }
-    if (hits.empty()) return false;
-    const double nearest = std::ranges::min(hits, {}, &Hit::distance).distance;
-    return std::ranges::none_of(
-        hits, [&](const Hit& hit) { return hit.distance <= nearest + least && hit.shows_front; });
+
+    /// The first thing turns its back. The sky does not.
+    bool is_of_backs() const {
+        return !hits_.empty() && std::ranges::none_of(hits_, [&](const Hit& hit) {
+            return hit.distance <= hits_.front().distance + least_ &&
+                   mesh_.surfaces[hit.surface].has_chart && shows_front(hit);
+        });
+    }
+
+    /// In how many solids it begins: so many more are left than entered, but for the walls of the
+    /// room that it may end at. Nothing where these cannot be told from what is left there.
+    std::optional<int> solids() const {
+        int left = 0;
+        bool ends_at_front = false, ends_at_back = false;
+        for (const Hit& hit : hits_) {
+            if (!is_of_a_solid(hit)) continue;
+            left += shows_front(hit) ? -1 : 1;
+            if (hit.distance >= hits_.back().distance - least_)
+                (shows_front(hit) ? ends_at_front : ends_at_back) = true;
+        }
+        if (ends_at_front && ends_at_back && left == 0) return {};
+        return left + ends_at_front;
+    }
+
+  private:
+    bool shows_front(const Hit& hit) const {
+        return glm::dot(mesh_.surfaces[hit.surface].normal, ray_.along) < 0;
+    }
+    bool is_of_a_solid(const Hit& hit) const {
+        const Surface& surface = mesh_.surfaces[hit.surface];
+        return !surface.is_back && surface.reverse == kNoReverse;
+    }
+
+    const Mesh& mesh_;
+    Ray ray_;
+    double least_;
+    std::vector<Hit> hits_;
+};
+
+/// Whatever else stands on that solid, or reaches into it.
+bool lies_in_a_solid(const Mesh& mesh, std::uint32_t index) {
+    // Along no axis, and ever steeper: what stands against a wall leaves the solid where the room
+    // ends.
+    constexpr std::array<glm::dvec2, 3> kSlopes = {{{2.31, 1.37}, {-1.73, 0.91}, {0.37, -0.53}}};
+    const Surface& surface = mesh.surfaces[mesh.patches[index].surface];
+    for (const glm::dvec2& slope : kSlopes) {
+        const auto along = surface.normal + slope.x * surface.u_axis + slope.y * surface.v_axis;
+        if (const auto solids = Sight(mesh, index, glm::normalize(along)).solids())
+            return *solids > 0;
+    }
+    return false;
+}
+
+bool is_covered(const Mesh& mesh, std::uint32_t index) {
+    const glm::dvec3& up = mesh.surfaces[mesh.patches[index].surface].normal;
+    return Sight(mesh, index, up).is_of_backs() || lies_in_a_solid(mesh, index);
 }
 
 /// Patches of one side that share edges, by their number in the surface.
@@ -101,9 +166,9 @@ class HiddenFinder {
                 *std::ranges::max_element(members, {}, [&](std::uint32_t i) {
                     return mesh_.area(mesh_.patches[surface.first_patch + i]);
                 });
-            looks_ += mesh_.patches.size();
+            looks_ += 2 * mesh_.patches.size();
             if (looks_ > kMostLooks) return;
-            if (!looks_at_backs(mesh_, surface.first_patch + largest)) continue;
+            if (!is_covered(mesh_, surface.first_patch + largest)) continue;
             for (const std::uint32_t i : members) hidden_[surface.first_patch + i] = true;
         }
     }

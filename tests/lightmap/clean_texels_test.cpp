@@ -112,6 +112,56 @@ TEST(CleanTexels, WhatLiesUnderABlockShowsTheLightBesideIt) {
     }
 }
 
+void add_solid(Scene& scene, const glm::dvec3& low, const glm::dvec3& high) {
+    for (const auto& face : solid_box(low, high)) add_face(scene, face, 0, 1);
+}
+
+Light dark_between(const glm::dvec2& low, const glm::dvec2& high) {
+    return [=](const glm::dvec3& at) {
+        return at.x > low.x && at.x < high.x && at.y > low.y && at.y < high.y ? 0.0 : 5.0;
+    };
+}
+
+// Of a table, its leg's top up to its board's bottom, into it or not quite: what comes first above
+// the leg's foot is the inside of the leg or the bottom of the board.
+TEST(CleanTexels, WhatLiesUnderALegShowsTheLightBesideItWhateverTheLegCarries) {
+    for (const bool in_a_room : {true, false})
+        for (const double top : {0.7, 0.71, 0.69}) {
+            Scene scene = floor_of(0, 0, 4, 4);
+            add_solid(scene, {1.3, 1.2, 0}, {1.5, 1.4, top});
+            add_solid(scene, {1.1, 1.0, 0.7}, {2.9, 2.7, 0.75});
+            if (in_a_room)
+                for (const auto& face : room({0, 0, 0}, {4, 4, 2}))
+                    if (face[0].z + face[1].z + face[2].z > 0) add_face(scene, face, 0, 2);
+
+            const Baked baked = bake(scene, 0.5, dark_between({1.3, 1.2}, {1.5, 1.4}));
+
+            expect_floor(baked, [](const glm::dvec3&) { return 5.0; });
+        }
+}
+
+TEST(CleanTexels, WhatLiesUnderAPillarShowsTheLightBesideIt) {
+    for (const double x : {1.3, 0.0}) {  // free, and at a wall
+        Scene scene = floor_of(0, 0, 4, 4);
+        for (const auto& face : room({0, 0, 0}, {4, 4, 2}))
+            if (face[0].z + face[1].z + face[2].z > 0) add_face(scene, face, 0, 2);
+        add_solid(scene, {x, 1.2, 0}, {x + 0.5, 1.9, 2});
+
+        const Baked baked = bake(scene, 0.5, dark_between({x, 1.2}, {x + 0.5, 1.9}));
+
+        expect_floor(baked, [](const glm::dvec3&) { return 5.0; });
+    }
+}
+
+TEST(CleanTexels, TheFloorUnderATableIsNotTakenForOneUnderABlock) {
+    Scene scene = floor_of(0, 0, 4, 4);
+    add_solid(scene, {1.1, 1.0, 0.7}, {2.9, 2.7, 0.75});
+    add_wall(scene, 2, 0, 4);
+    const Light light = [](const glm::dvec3& at) { return at.x < 2 ? 0.0 : 5.0; };
+
+    expect_floor(bake(scene, 0.5, light, 0.1), light);
+}
+
 TEST(CleanTexels, ADarkRoomThatIsShutIsNotTakenForABlock) {
     Scene scene = floor_of(0, 0, 4, 4);
     for (const auto& face : solid_box({1, 1, 0}, {3, 3, 1})) {
