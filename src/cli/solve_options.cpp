@@ -63,7 +63,7 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
 }
 
 void add_chart_options(CLI::App& command, ChartSettings& charts) {
-    add_value(command, {"--texel-size", "METRES", "edge of a texel [half the median cell's]"},
+    add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch's edge]"},
               [&](const OptionValue& value) { charts.texel_size = positive_number(value); });
     add_value(command,
               {"--atlas-size", "N",

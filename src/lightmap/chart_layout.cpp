@@ -26,12 +26,15 @@ glm::dvec2 extent_of(const Surface& surface) {
     return surface.cell_size * glm::dvec2(surface.columns, surface.rows);
 }
 
+double area_of_chart(const Surface& surface) {
+    const glm::dvec2 extent = extent_of(surface);
+    return extent.x * extent.y;
+}
+
 double chart_area(const Mesh& mesh) {
     double sum = 0;
-    for (const Surface& surface : mesh.surfaces) {
-        const glm::dvec2 extent = extent_of(surface);
-        sum += surface.has_chart ? extent.x * extent.y : 0.0;
-    }
+    for (const Surface& surface : mesh.surfaces)
+        sum += surface.has_chart ? area_of_chart(surface) : 0.0;
     return sum;
 }
 
@@ -198,15 +201,21 @@ void generate_charts(const Mesh& mesh, const std::vector<bool>& with_chart,
 
 }  // namespace
 
+// By area: many small faces of one object are not to refine the walls, but furniture throughout is.
 double default_texel_size(const Mesh& mesh) {
-    std::vector<double> edges;
-    for (const Surface& surface : mesh.surfaces) {
-        if (surface.has_chart) edges.push_back(std::min(surface.cell_size.x, surface.cell_size.y));
-    }
+    std::vector<std::pair<double, double>> edges;  // and the area of their charts
+    for (const Surface& surface : mesh.surfaces)
+        if (surface.has_chart)
+            edges.emplace_back(std::min(surface.cell_size.x, surface.cell_size.y),
+                               area_of_chart(surface));
     if (edges.empty()) return 1.0;
-    const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
-    std::nth_element(edges.begin(), middle, edges.end());
-    return std::max(*middle / 2.0, std::sqrt(chart_area(mesh) / kDefaultTexelLimit));
+    std::ranges::sort(edges);
+    const double area = chart_area(mesh);
+    double sum = 0;
+    const auto rank = std::ranges::find_if(
+        edges, [&](const auto& edge) { return (sum += edge.second) >= area / 20; });
+    const double edge = rank == edges.end() ? edges.back().first : rank->first;
+    return std::max(edge / 2, std::sqrt(area / kDefaultTexelLimit));
 }
 
 ChartLayout lay_out_charts(const Mesh& mesh, const ChartSettings& settings) {

@@ -67,8 +67,8 @@ struct ChartLayout {
     std::vector<std::string> warnings;       ///< one line each, for people
 };
 
-/// Half the median over the charts of a grid's shorter cell edge, but not so small that the charts
-/// alone would fill an atlas of 8192 x 8192.
+/// Half of the shorter cell edge that a twentieth of the charts' area is below, but not so small that
+/// the charts alone would fill an atlas of 8192 x 8192.
 double default_texel_size(const Mesh& mesh);
 
 /// A chart for each surface that has one, packed into an atlas as square as possible, or into

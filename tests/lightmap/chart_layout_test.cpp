@@ -73,13 +73,15 @@ TEST(ChartLayout, RoundingAddsNoTexel) {
     EXPECT_EQ(layout.charts[0].height, 21u);
 }
 
-TEST(ChartLayout, DefaultTexelIsHalfTheMedianOfTheShorterCellEdges) {
+TEST(ChartLayout, DefaultTexelIsHalfTheShorterCellEdgeButOfWhatIsSmallInAll) {
     Mesh mesh;
-    add_surface(mesh, 1, 1, {0.2, 9.0});
+    add_surface(mesh, 1, 1, {0.01, 0.02});
     add_surface(mesh, 1, 1, {5.0, 0.4});
-    add_surface(mesh, 1, 1, {7.0, 8.0});
-
+    add_surface(mesh, 2, 1, {7.0, 1.0});
     EXPECT_DOUBLE_EQ(default_texel_size(mesh), 0.2);
+
+    add_surface(mesh, 100, 100, {0.03, 0.05});
+    EXPECT_DOUBLE_EQ(default_texel_size(mesh), 0.015);
 }
 
 TEST(ChartLayout, DefaultTexelAlwaysFitsTheAtlas) {
