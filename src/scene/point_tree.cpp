@@ -61,7 +61,7 @@ void PointTree::build(std::size_t begin, std::size_t end) {
     });
     axes_[middle] = static_cast<std::uint8_t>(axis);
     build(begin, middle);
-    build(middle, end);
+    build(middle + 1, end);
 }
 
 std::vector<std::uint32_t> PointTree::near(const glm::dvec3& from, const glm::dvec3& to,
@@ -81,9 +81,11 @@ std::vector<std::uint32_t> PointTree::near(const glm::dvec3& from, const glm::dv
         }
         const std::size_t middle = (visit.begin + visit.end) / 2;
         const int axis = axes_[middle];
-        const double split = positions_[points_[middle]][axis];
+        const glm::dvec3& at = positions_[points_[middle]];
+        if (segment.is_near(at)) found.push_back(points_[middle]);
+        const double split = at[axis];
         open.push_back(clipped({visit.begin, middle, visit.t0, visit.t1}, wide, axis, split, 1));
-        open.push_back(clipped({middle, visit.end, visit.t0, visit.t1}, wide, axis, split, -1));
+        open.push_back(clipped({middle + 1, visit.end, visit.t0, visit.t1}, wide, axis, split, -1));
     }
     return found;
 }
