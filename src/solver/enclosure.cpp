@@ -10,8 +10,8 @@ namespace {
 
 // The rows of a rotation by an odd angle about an odd axis.
 const glm::dvec3 kRay = glm::normalize(glm::dvec3(0.2718281828, 0.3141592653, 0.9093178221));
-const glm::dvec3 kAcross = glm::normalize(glm::cross(kRay, glm::dvec3(0.7320508075, -0.4142135623,
-                                                                      0.2360679774)));
+const glm::dvec3 kAcross =
+    glm::normalize(glm::cross(kRay, glm::dvec3(0.7320508075, -0.4142135623, 0.2360679774)));
 const glm::dvec3 kUpwards = glm::cross(kRay, kAcross);
 
 glm::dvec3 turned(const glm::dvec3& p) {
@@ -77,7 +77,8 @@ bool Enclosure::holds(const glm::dvec3& point) const {
         if (outline.slope_x * at.x + outline.slope_y * at.y + outline.base <= at.z) continue;
         bool inside = false;
         for (std::size_t k = 0; k < 4; ++k)
-            inside ^= passes_left_of({at.x, at.y}, outline.corners[k], outline.corners[(k + 1) % 4]);
+            inside ^=
+                passes_left_of({at.x, at.y}, outline.corners[k], outline.corners[(k + 1) % 4]);
         if (inside) leaves += outline.leaves;
     }
     return leaves > 0;

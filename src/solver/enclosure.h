@@ -12,8 +12,8 @@
 
 namespace hemirad {
 
-/// A closed surface of sides of patches, of which one can ask what lies within: a ray in a direction
-/// that no scene is aligned with leaves it once more than it enters it.
+/// A closed surface of sides of patches, of which one can ask what lies within: a ray in a
+/// direction that no scene is aligned with leaves it once more than it enters it.
 class Enclosure {
   public:
     Enclosure(const Mesh& mesh, const MergedVertices& vertices,

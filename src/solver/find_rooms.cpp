@@ -169,7 +169,8 @@ class RoomFinder {
         for (std::uint32_t patch = 0; patch < mesh_.patches.size(); ++patch)
             areas[room_at(front_of(patch))] += mesh_.area(mesh_.patches[patch]);
         std::vector<std::pair<std::uint32_t, double>> order(areas.begin(), areas.end());
-        std::ranges::stable_sort(order, std::ranges::greater{}, &std::pair<std::uint32_t, double>::second);
+        std::ranges::stable_sort(order, std::ranges::greater{},
+                                 &std::pair<std::uint32_t, double>::second);
         std::map<std::uint32_t, std::uint32_t> bits;
         for (std::uint32_t i = 0; i < order.size(); ++i)
             bits[order[i].first] = 1u << std::min(i, kOwnBits);

@@ -20,9 +20,9 @@ struct Rooms {
 inline constexpr std::uint32_t kAllRooms = 0xffffffffu;
 
 /// Rooms are what closed surfaces of patches bound, edge by edge, and what floats within. What
-/// penetrates one without an edge joins it with what is on the other side; where patches do not meet
-/// to the weld, the two sides of that wall are one room. Empty where there is but one room, in meshes
-/// made by hand, and where finding them would take too long.
+/// penetrates one without an edge joins it with what is on the other side; where patches do not
+/// meet to the weld, the two sides of that wall are one room. Empty where there is but one room, in
+/// meshes made by hand, and where finding them would take too long.
 Rooms find_rooms(const Mesh& mesh);
 
 }  // namespace hemirad

@@ -44,7 +44,8 @@ std::vector<PatchEdge> edges_of(const Mesh& mesh, const Surface& surface,
         for (std::size_t k = 0; k < 4; ++k) {
             const std::uint32_t from = vertices.of[corners[k]];
             const std::uint32_t to = vertices.of[corners[(k + 1) % 4]];
-            if (from != to) edges.push_back({std::min(from, to), std::max(from, to), patch, from < to});
+            if (from != to)
+                edges.push_back({std::min(from, to), std::max(from, to), patch, from < to});
         }
     }
     return edges;
@@ -150,15 +151,14 @@ class SideJoiner {
     }
 
     std::vector<Leaf> leaves_around(std::span<const EdgePart> shared) const {
-        const glm::dvec3 axis = glm::normalize(
-            std::ranges::max(shared, {}, [](const EdgePart& edge) {
-                return glm::dot(edge.whole, edge.whole);
-            }).whole);
+        const glm::dvec3 axis =
+            glm::normalize(std::ranges::max(shared, {}, [](const EdgePart& edge) {
+                               return glm::dot(edge.whole, edge.whole);
+                           }).whole);
         glm::dvec3 right{}, up{};
         std::vector<Leaf> leaves;
         for (const EdgePart& edge : shared) {
-            const glm::dvec3 left =
-                glm::cross(normals_[mesh_.patches[edge.patch].surface], axis);
+            const glm::dvec3 left = glm::cross(normals_[mesh_.patches[edge.patch].surface], axis);
             const glm::dvec3 inwards = edge.ascends ? left : -left;
             if (leaves.empty()) {
                 right = glm::normalize(inwards);

@@ -352,14 +352,13 @@ void ShotPipeline::init_plane() {
 
 void ShotPipeline::aim_hemisphere() {
     acu_.issue(kernel("aim_hemisphere"), {member_count(), 1}, shot_, shooter_corners_,
-               shooter_normals_, shooter_planes_, shooter_reached_,
-               std::int32_t(shooter_stride_), shooter_samples_);
+               shooter_normals_, shooter_planes_, shooter_reached_, std::int32_t(shooter_stride_),
+               shooter_samples_);
 }
 
 void ShotPipeline::cull_patches() {
     acu_.issue(kernel("cull_patches"), salvo_stack_grid(), shot_, clusters_, corners_, normals_,
-               planes_, rooms_, std::int32_t(stride_), std::int32_t(depth_), stack_,
-               stack_height_);
+               planes_, rooms_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
 }
 
 void ShotPipeline::set_up_projection() {

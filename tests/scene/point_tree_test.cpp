@@ -15,8 +15,7 @@ std::vector<std::uint32_t> near_one_by_one(const std::vector<glm::dvec3>& points
                                            double distance) {
     std::vector<std::uint32_t> found;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-        const double t =
-            glm::dot(points[i] - from, to - from) / glm::dot(to - from, to - from);
+        const double t = glm::dot(points[i] - from, to - from) / glm::dot(to - from, to - from);
         if (t > 0 && t < 1 && glm::distance(points[i], from + t * (to - from)) <= distance)
             found.push_back(i);
     }

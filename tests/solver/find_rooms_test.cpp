@@ -106,9 +106,8 @@ TEST_P(RoomOfWalls, MayStandAtAnyAngle) {
         for (auto& face : turned)
             for (auto& corner : face) corner = glm::dvec3(glm::vec3(turn(corner)));
 
-        const Sight found = sight(meshed(scene_of(turned), 0.4), [&](const glm::dvec3& at) {
-            return is_within(turn_back(at));
-        });
+        const Sight found = sight(meshed(scene_of(turned), 0.4),
+                                  [&](const glm::dvec3& at) { return is_within(turn_back(at)); });
 
         EXPECT_TRUE(found.all(1, 1)) << angle;
         EXPECT_TRUE(found.none(1, 0)) << angle;
@@ -166,8 +165,8 @@ TEST(FindRooms, WhatSticksThroughAWallIsSeenOnBothSides) {
     std::uint32_t beam = 0, inside = 0, outside = 0;
     for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
         const glm::dvec3 at = mesh.centroid(mesh.patches[i]);
-        const bool is_beam = glm::all(glm::greaterThanEqual(at, low)) &&
-                             glm::all(glm::lessThanEqual(at, high));
+        const bool is_beam =
+            glm::all(glm::greaterThanEqual(at, low)) && glm::all(glm::lessThanEqual(at, high));
         if (is_beam)
             beam |= rooms.before[i];
         else
