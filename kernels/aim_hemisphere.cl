@@ -114,7 +114,8 @@ static void store_axis(float3 axis, __global float* to) {
 
 __kernel void aim_hemisphere(__global Shot* salvo, const __global int* corners,
                              const __global float* normals, const __global int* planes,
-                             int stride, const __global int* shooter_samples) {
+                             const __global int* reached, int stride,
+                             const __global int* shooter_samples) {
     __global Shot* shot = salvo + get_global_id(0);
     if (!is_projecting(shot)) return;
     const int shooter = shot->shooter, samples = shooter_samples[shooter], part = shot->part;
@@ -132,6 +133,7 @@ __kernel void aim_hemisphere(__global Shot* salvo, const __global int* corners,
     const int3 origin = on_grid(steps, triangle ? triangle_sample(part, samples)
                                                 : quad_sample(corner, part, samples));
     shot->plane = planes[shooter];
+    shot->reached = reached[shooter];
     shot->origin[0] = origin.x;
     shot->origin[1] = origin.y;
     shot->origin[2] = origin.z;

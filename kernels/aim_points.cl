@@ -27,6 +27,7 @@ __kernel void aim_points(__global Shot* salvo, const __global GatherPoint* point
     if (!is_aimed) return;
     const __global GatherPoint* point = points + next;
     shot->plane = point->plane;
+    shot->reached = point->reached;
     for (int axis = 0; axis < 3; ++axis) shot->origin[axis] = point->origin[axis];
     copy_axis(point->u_axis, shot->u_axis);
     copy_axis(point->v_axis, shot->v_axis);

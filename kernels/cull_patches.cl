@@ -5,6 +5,13 @@
 #include "progress.clh"
 #include "stacks.clh"
 
+// Rooms that no light comes to from the shooter's are not looked into: between proxels, or where two
+// patches claim one, what shuts them off may miss a ray.
+static int_v is_reached(const __global Shot* shot, const __global int* rooms, int patch) {
+    const int reached = shot->reached;
+    return reached == -1 ? (int_v)-1 : ~equal_v(load_v(patch, rooms) & reached, (int_v)0);
+}
+
 // Whether a corner at `squared` distance shows by its `height` that it lies before a plane.
 static int_v is_before(real_v height, real_v squared) {
     const real_v sure = height - kGridMargin;
@@ -61,8 +68,9 @@ static int share_visible(const __global Shot* shot, const __global Cluster* clus
 
 __kernel void cull_patches(const __global Shot* salvo, const __global Cluster* clusters,
                            const __global int* corners, const __global float* normals,
-                           const __global int* planes, int stride, int depth,
-                           __global Level* stack, __global int* stack_height) {
+                           const __global int* planes, const __global int* rooms, int stride,
+                           int depth, __global Level* stack,
+                           __global int* stack_height) {
     const Stack own = own_stack(salvo);
     if (own.member < 0) return;
     const __global Shot* shot = salvo + own.member;
@@ -73,7 +81,8 @@ __kernel void cull_patches(const __global Shot* salvo, const __global Cluster* c
         const int share = share_visible(shot, clusters + first / kClusterPatches);
         if (share == kNone) continue;
         for (int patch = first; patch < first + kClusterPatches; patch += LANES) {
-            int_v visible = ~in_plane_of(shot, planes, patch);
+            int_v visible =
+                ~in_plane_of(shot, planes, patch) & is_reached(shot, rooms, patch);
             if (share == kSome && any_v(visible))
                 visible &= faces_from_in_front(shot, corners, normals, stride, patch);
             const Level level = {patch, bits_of(visible)};

@@ -4,11 +4,12 @@
 
 __kernel void prepare_patches(const __global Shot* salvo, const __global Cluster* clusters,
                               const __global int* corners, const __global float* normals,
-                              const __global int* planes, int stride, int depth,
-                              __global Level* stack, __global int* stack_height,
+                              const __global int* planes, const __global int* rooms, int stride,
+                              int depth, __global Level* stack, __global int* stack_height,
                               __global Projection* projections, __global Rectangle* rectangles,
                               __global int* projection_count, __global int* tile_counts) {
-    cull_patches(salvo, clusters, corners, normals, planes, stride, depth, stack, stack_height);
+    cull_patches(salvo, clusters, corners, normals, planes, rooms, stride, depth, stack,
+                 stack_height);
     set_up_projection(salvo, corners, normals, stride, depth, stack, stack_height, projections,
                       rectangles, projection_count);
     count_areas(salvo, rectangles, projection_count, depth, tile_counts);

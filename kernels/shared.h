@@ -65,6 +65,7 @@ typedef struct {
     int32_t is_done;    // while others of the salvo have hemispheres left
     int32_t origin[3];  // one of the shooter's hemispheres, grid steps
     float u_axis[3], v_axis[3], normal[3];
+    int32_t reached;           // rooms that its light may come to, a bit each; -1: all
     int32_t is_ahead;          // its row is found, but it does not shoot yet
     uint32_t bin_entries;      // patches in the lists of all tiles
     uint32_t escaped_proxels;  // of the last shot
@@ -80,10 +81,12 @@ typedef struct {
     uint32_t repeated_shots, repeated_salvos;  // by known rows alone
 } Shot;
 
-// Where a hemisphere of the final gather stands: a point on a surface, `plane` as `planes`.
+// Where a hemisphere of the final gather stands: a point on a surface, `plane` as `planes`, `reached`
+// as a Shot's.
 typedef struct {
     int32_t origin[3], plane;  // grid steps
     float u_axis[3], v_axis[3], normal[3];
+    int32_t reached;
 } GatherPoint;
 
 // kClusterPatches consecutive patches: the box around their corners; the mean of their normals, how
@@ -137,8 +140,8 @@ typedef struct {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(BlockSummary) == 8);
-static_assert(sizeof(Shot) == 140);
-static_assert(sizeof(GatherPoint) == 52);
+static_assert(sizeof(Shot) == 144);
+static_assert(sizeof(GatherPoint) == 56);
 static_assert(sizeof(Cluster) == 44);
 static_assert(sizeof(Level) == 8);
 static_assert(sizeof(Projection) == 64);

@@ -61,7 +61,7 @@ void PointTree::build(std::size_t begin, std::size_t end) {
     });
     axes_[middle] = static_cast<std::uint8_t>(axis);
     build(begin, middle);
-    build(middle, end);
+    build(middle + 1, end);
 }
 
 std::vector<std::uint32_t> PointTree::near(const glm::dvec3& from, const glm::dvec3& to,
@@ -73,7 +73,6 @@ std::vector<std::uint32_t> PointTree::near(const glm::dvec3& from, const glm::dv
     while (!open.empty()) {
         const Visit visit = open.back();
         open.pop_back();
-        if (visit.t0 > visit.t1) continue;
         if (visit.end - visit.begin <= kLeaf) {
             for (std::size_t i = visit.begin; i < visit.end; ++i)
                 if (segment.is_near(positions_[points_[i]])) found.push_back(points_[i]);
@@ -81,9 +80,13 @@ std::vector<std::uint32_t> PointTree::near(const glm::dvec3& from, const glm::dv
         }
         const std::size_t middle = (visit.begin + visit.end) / 2;
         const int axis = axes_[middle];
-        const double split = positions_[points_[middle]][axis];
-        open.push_back(clipped({visit.begin, middle, visit.t0, visit.t1}, wide, axis, split, 1));
-        open.push_back(clipped({middle, visit.end, visit.t0, visit.t1}, wide, axis, split, -1));
+        const glm::dvec3& at = positions_[points_[middle]];
+        if (segment.is_near(at)) found.push_back(points_[middle]);
+        const double split = at[axis];
+        for (const Visit& half :
+             {clipped({visit.begin, middle, visit.t0, visit.t1}, wide, axis, split, 1),
+              clipped({middle + 1, visit.end, visit.t0, visit.t1}, wide, axis, split, -1)})
+            if (half.t0 <= half.t1) open.push_back(half);
     }
     return found;
 }

@@ -102,6 +102,7 @@ device::GatherPoint Gather::aimed(const SurfacePoint& point) const {
         (point.position - arrays_.centre) * (arrays_.scale / double{kGridStep});
     device::GatherPoint aimed{};
     aimed.plane = static_cast<std::int32_t>(surface.plane);
+    aimed.reached = arrays_.reached[point.patch];
     store(glm::round(steps), aimed.origin);
     store(u_axis, aimed.u_axis);
     store(glm::cross(normal, u_axis), aimed.v_axis);

@@ -9,6 +9,7 @@
 #include "errors.h"
 #include "kernels/shared.h"
 #include "solver/find_rims.h"
+#include "solver/find_rooms.h"
 
 namespace hemirad {
 namespace {
@@ -61,6 +62,8 @@ void store_polygons(PatchArrays& arrays, const Mesh& mesh, const Polygons& polyg
     arrays.corners.resize(std::size_t{3} * arrays.corner_count * arrays.stride);
     arrays.normals.resize(std::size_t{3} * arrays.stride);
     arrays.planes.resize(arrays.stride, -1);
+    arrays.rooms.resize(arrays.stride, -1);
+    arrays.reached.resize(arrays.stride, -1);
     for (std::size_t i = 0; i < polygons.size(); ++i) {
         for (std::uint32_t k = 0; k < arrays.corner_count; ++k) {
             const auto& world = mesh.vertices[polygons[i].corners[k]];
@@ -142,6 +145,9 @@ PatchArrays patch_arrays(const Mesh& mesh, bool with_rims) {
     arrays.centre = 0.5 * extent.least + 0.5 * extent.most;
     arrays.scale = normalising_scale(extent);
     store_polygons(arrays, mesh, mesh.patches);
+    const Rooms rooms = find_rooms(mesh);
+    std::ranges::copy(rooms.before, arrays.rooms.begin());
+    std::ranges::copy(rooms.reached, arrays.reached.begin());
     if (with_rims) arrays.rims = find_rims(mesh, arrays.corner_count);
     arrays.rims.resize(arrays.stride);
     return arrays;
@@ -154,6 +160,12 @@ ShooterArrays shooter_arrays(const Mesh& mesh, const PatchArrays& patches) {
     shooters.polygons.centre = patches.centre;
     shooters.polygons.scale = patches.scale;
     store_polygons(shooters.polygons, mesh, mesh.shooters);
+    for (std::size_t i = 0; i < mesh.shooters.size(); ++i) {
+        const auto [corners, surface, first, count, splits] = mesh.shooters[i];
+        shooters.polygons.reached[i] = 0;
+        for (std::uint32_t patch = first; patch < first + count; ++patch)
+            shooters.polygons.reached[i] |= patches.reached[patch];
+    }
     for (const Shooter& shooter : mesh.shooters)
         shooters.first_patch.push_back(static_cast<std::int32_t>(shooter.first_patch));
     shooters.first_patch.resize(shooters.polygons.stride + 1,

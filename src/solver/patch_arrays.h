@@ -18,6 +18,8 @@ struct PatchArrays {
     std::vector<std::int32_t> corners;  ///< [corner][axis][stride], steps of kGridStep
     std::vector<float> normals;         ///< [axis][stride], unit; 0 beyond the last patch
     std::vector<std::int32_t> planes;   ///< [stride] Surface::plane; -1: no other patch's
+    std::vector<std::int32_t> rooms;    ///< [stride] Rooms::before
+    std::vector<std::int32_t> reached;  ///< [stride] Rooms::reached; of shooters, of all patches
     std::vector<std::uint8_t> rims;     ///< [stride] find_rims(); of shooters none
     glm::dvec3 centre{};
     double scale = 1;  ///< normalised = (world - centre) * scale; steps = normalised / kGridStep

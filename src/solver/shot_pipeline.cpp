@@ -195,10 +195,11 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
     const std::uint64_t slots = stacks * stack_depth(static_cast<std::uint32_t>(stride),
                                                      static_cast<std::uint32_t>(stacks));
     const std::uint64_t tiles = count_tiles(resolution, array);
-    const std::uint64_t geometry =
-        stride * (4 * (3 * corner_count + 5) + 1) + stride / kClusterPatches * sizeof(device::Cluster);
     const std::uint64_t shooter_stride =
         std::uint64_t{quotient_up(shooters, kReduceBlock)} * kReduceBlock;
+    const std::uint64_t geometry = stride * (4 * (3 * corner_count + 6) + 1) +
+                                   stride / kClusterPatches * sizeof(device::Cluster) +
+                                   4 * shooter_stride;
     const std::uint64_t radiosity = 4 * bands * (2 * stride + 2 * shooter_stride);
     const std::uint64_t groups =
         shooters < patches ? shooter_stride * 4 * (3 * corner_count + 6) : 0;
@@ -251,8 +252,9 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     corners_ = acu_.plural(patches.corners);
     normals_ = acu_.plural(patches.normals);
     planes_ = acu_.plural(patches.planes);
+    rooms_ = acu_.plural(patches.rooms);
     rims_ = acu_.plural(patches.rims);
-    load_shooters(shooters);
+    load_shooters(patches, shooters);
     roots_ = acu_.plural<float>(std::size_t{tile_count_} * array_.tile_width * array_.tile_height);
     const std::size_t stacks = std::size_t{salvo_} * stack_count_;
     stack_ = acu_.plural<device::Level>(stacks * (depth_ / array_.lanes));
@@ -299,10 +301,11 @@ void ShotPipeline::build_kernels(const mp1map::Device& device, const PipelineSet
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void ShotPipeline::load_shooters(const ShooterArrays& shooters) {
+void ShotPipeline::load_shooters(const PatchArrays& patches, const ShooterArrays& shooters) {
     const bool own = shooters.first_patch.empty();
     shooter_corners_ = own ? corners_ : acu_.plural(shooters.polygons.corners);
     shooter_normals_ = own ? normals_ : acu_.plural(shooters.polygons.normals);
+    shooter_reached_ = acu_.plural(own ? patches.reached : shooters.polygons.reached);
     shooter_planes_ = own ? planes_ : acu_.plural(shooters.polygons.planes);
     first_patch_ = acu_.plural(shooters.first_patch);
     shooter_samples_ = acu_.plural(samples_);
@@ -326,6 +329,8 @@ void ShotPipeline::load(const PatchArrays& patches) {
     acu_.load(corners_, std::span(patches.corners));
     acu_.load(normals_, std::span(patches.normals));
     acu_.load(planes_, std::span(patches.planes));
+    acu_.load(rooms_, std::span(patches.rooms));
+    acu_.load(shooter_reached_, std::span(patches.reached));
     acu_.load(rims_, std::span(patches.rims));
 }
 
@@ -347,12 +352,13 @@ void ShotPipeline::init_plane() {
 
 void ShotPipeline::aim_hemisphere() {
     acu_.issue(kernel("aim_hemisphere"), {member_count(), 1}, shot_, shooter_corners_,
-               shooter_normals_, shooter_planes_, std::int32_t(shooter_stride_), shooter_samples_);
+               shooter_normals_, shooter_planes_, shooter_reached_, std::int32_t(shooter_stride_),
+               shooter_samples_);
 }
 
 void ShotPipeline::cull_patches() {
     acu_.issue(kernel("cull_patches"), salvo_stack_grid(), shot_, clusters_, corners_, normals_,
-               planes_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
+               planes_, rooms_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_);
 }
 
 void ShotPipeline::set_up_projection() {
@@ -375,7 +381,7 @@ void ShotPipeline::prepare_patches() {
         return;
     }
     acu_.issue(kernel("prepare_patches"), salvo_stack_grid(), shot_, clusters_, corners_, normals_,
-               planes_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_,
+               planes_, rooms_, std::int32_t(stride_), std::int32_t(depth_), stack_, stack_height_,
                projections_, rectangles_, projection_count_, places_);
 }
 

@@ -174,7 +174,7 @@ class ShotPipeline {
     mp1map::Kernel& kernel(const std::string& name);
     void build_kernels(const mp1map::Device& device, const PipelineSettings& settings,
                        std::uint32_t corner_count);
-    void load_shooters(const ShooterArrays& shooters);
+    void load_shooters(const PatchArrays& patches, const ShooterArrays& shooters);
     void load_near_pairs(const NearPairs& pairs);
     template <class T>
     std::vector<T> projected(const mp1map::Plural<T>& plural);  // what is set up of [pe][slot]
@@ -203,11 +203,11 @@ class ShotPipeline {
 
     mp1map::Plural<device::Shot> shot_;
     mp1map::Plural<device::Cluster> clusters_;
-    mp1map::Plural<std::int32_t> corners_, planes_;
+    mp1map::Plural<std::int32_t> corners_, planes_, rooms_;
     mp1map::Plural<float> normals_, roots_;
     mp1map::Plural<std::uint8_t> rims_;
     // The patches' own where each shoots for itself.
-    mp1map::Plural<std::int32_t> shooter_corners_, shooter_planes_, first_patch_;
+    mp1map::Plural<std::int32_t> shooter_corners_, shooter_planes_, shooter_reached_, first_patch_;
     mp1map::Plural<float> shooter_normals_;
     mp1map::Plural<std::int32_t> shooter_samples_;
     mp1map::Plural<device::Level> stack_;

@@ -45,7 +45,8 @@ class AimHemisphere {
     device::Shot aimed(const device::Shot& shot, int samples) {
         auto plural = run_.plural(std::vector{shot});
         run_.issue({1, 1}, plural, run_.plural(arrays_.corners), run_.plural(arrays_.normals),
-                   run_.plural(arrays_.planes), std::int32_t(arrays_.stride),
+                   run_.plural(arrays_.planes), run_.plural(arrays_.reached),
+                   std::int32_t(arrays_.stride),
                    run_.plural(std::vector<std::int32_t>(arrays_.stride, samples)));
         return run_.acu().unload(plural).front();
     }

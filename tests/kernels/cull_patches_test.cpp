@@ -52,7 +52,7 @@ StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
     auto heights = run.plural(std::vector<std::int32_t>(stacks.count(), -1));
     run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(clusters_of(arrays)),
               run.plural(arrays.corners), run.plural(arrays.normals), run.plural(arrays.planes),
-              std::int32_t(arrays.stride), std::int32_t(stacks.depth), stack, heights);
+              run.plural(arrays.rooms), std::int32_t(arrays.stride), std::int32_t(stacks.depth), stack, heights);
 
     const auto levels = run.acu().unload(stack);
     const auto height = run.acu().unload(heights);
@@ -164,6 +164,21 @@ TEST_P(CullPatches, PatchesOfTheShootersPlaneSeeNothingOfItThoughTheyTilt) {
     std::vector<std::int32_t> kept;
     for (const auto& stack : stacks) kept.insert(kept.end(), stack.begin(), stack.end());
     EXPECT_EQ(kept, std::vector<std::int32_t>{2});
+}
+
+TEST_P(CullPatches, RoomsThatNoLightComesToAreNotLookedInto) {
+    const auto shot = shot_from({0.1, -0.2, 0.05}, {0.3, 0.4, 0.8});
+    auto arrays = random_patches(200, 4, 14);
+    for (std::uint32_t patch = 0; patch < arrays.patch_count; ++patch)
+        arrays.rooms[patch] = std::int32_t(1u << (patch % 3 == 0 ? 31 : patch % 3));
+    const Stacks stacks(GetParam(), arrays.stride);
+    auto expected = expected_stacks(shot, arrays, stacks);
+    for (auto& stack : expected) std::erase_if(stack, [](int patch) { return patch % 3 == 1; });
+    auto shut = shot;
+    shut.reached = std::int32_t(1u << 31 | 1u << 2);
+
+    EXPECT_EQ(stacks_after(shut, arrays, GetParam()), expected);
+    EXPECT_EQ(stacks_after(shot, arrays, GetParam()), expected_stacks(shot, arrays, stacks));
 }
 
 TEST_P(CullPatches, AHaltedShotLeavesTheStacksAlone) {

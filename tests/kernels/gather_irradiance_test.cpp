@@ -130,6 +130,7 @@ std::vector<device::GatherPoint> numbered_points(int count) {
     for (int i = 0; i < count; ++i) {
         auto& point = points[static_cast<std::size_t>(i)];
         point.plane = 10 * i;
+        point.reached = 7 * i;
         for (int axis = 0; axis < 3; ++axis) {
             point.origin[axis] = 100 * i + axis;
             point.u_axis[axis] = float(i + axis);
@@ -166,6 +167,7 @@ TEST(AimPoints, GivesEachOfASalvoAPointAndLeavesOutTheRest) {
         EXPECT_EQ(salvo[i].row_known, 0);
         EXPECT_EQ(salvo[i].part, 1u);
         EXPECT_EQ(salvo[i].plane, point.plane);
+        EXPECT_EQ(salvo[i].reached, point.reached);
         for (int axis = 0; axis < 3; ++axis) {
             EXPECT_EQ(salvo[i].origin[axis], point.origin[axis]);
             EXPECT_EQ(salvo[i].u_axis[axis], point.u_axis[axis]);

@@ -115,11 +115,11 @@ TEST(Junctions, DoNotCollapseNeedles) {
     EXPECT_EQ(mesh.input.moved, 0u);
 }
 
-TEST(Junctions, OfHundredsOfThousandsOfLooseTrianglesTakeSeconds) {
+TEST(Junctions, OfAHundredThousandLooseTrianglesTakeSeconds) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> any(0, 1);
     Scene scene = empty_scene();
-    for (int i = 0; i < 200000; ++i) {
+    for (int i = 0; i < 100000; ++i) {
         const glm::dvec3 at(any(random), any(random), any(random));
         const auto corner = [&] {
             return at + 0.02 * glm::dvec3(any(random), any(random), any(random));

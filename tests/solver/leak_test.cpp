@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lightmap/rasterize.h"
+#include "solver/gather.h"
 #include "solver/support.h"
 
 // A room without light in a hall that has some: what is shut in stays dark, to the last texel.
@@ -53,22 +54,34 @@ std::vector<double> texels_shut_in(const Mesh& mesh, const Solution& solution) {
     return values;
 }
 
-TEST(SealedRoom, StaysDarkOnEveryTexelBehindThickWalls) {
-    const Mesh mesh = meshed(hall_with_room(0.1), 0.4);
-    const Solution solution = solution_of(mesh, settings(64, 1e-3));
+struct Way {
+    double thickness;
+    std::uint32_t resolution;
+    FormFactorMode form_factor;
+};
 
-    const auto values = texels_shut_in(mesh, solution);
+class SealedRoom : public testing::TestWithParam<Way> {};
 
-    ASSERT_GT(values.size(), 200u);
-    EXPECT_LT(std::ranges::max(values), 1e-6);
-    EXPECT_GT(std::ranges::max(solution.irradiance[0]), 1);
+std::vector<Way> ways() {
+    std::vector<Way> ways;
+    for (const double thickness : {0.0, 0.1})
+        for (const std::uint32_t resolution : {64, 128})
+            for (const auto form_factor : {FormFactorMode::analytic, FormFactorMode::count})
+                ways.push_back({thickness, resolution, form_factor});
+    return ways;
 }
 
-// What hides a strip of floor narrower than a proxel is found by its outline.
-TEST(SealedRoom, StaysDarkOnEveryTexelBehindWallsWithoutThickness) {
-    const Mesh mesh = meshed(hall_with_room(0), 0.4);
-    SolverSettings how = settings(256, 1e-2);
-    how.form_factor = FormFactorMode::analytic;
+INSTANTIATE_TEST_SUITE_P(Ways, SealedRoom, testing::ValuesIn(ways()), [](const auto& way) {
+    return std::string(way.param.thickness > 0 ? "Thick" : "Thin") +
+           (way.param.form_factor == FormFactorMode::count ? "Counted" : "Analytic") +
+           std::to_string(way.param.resolution);
+});
+
+// However coarse the plane is: strips of floor beside the walls are narrower than a proxel.
+TEST_P(SealedRoom, StaysDarkOnEveryTexel) {
+    const Mesh mesh = meshed(hall_with_room(GetParam().thickness), 0.4);
+    SolverSettings how = settings(GetParam().resolution, 1e-2);
+    how.form_factor = GetParam().form_factor;
     const Solution solution = solution_of(mesh, how);
 
     const auto values = texels_shut_in(mesh, solution);
@@ -78,8 +91,30 @@ TEST(SealedRoom, StaysDarkOnEveryTexelBehindWallsWithoutThickness) {
     EXPECT_GT(std::ranges::max(solution.irradiance[0]), 1);
 }
 
+// Points of the final gather look no further than what shoots.
+TEST(SealedRooms, StayDarkWhereTexelsLookForThemselves) {
+    const Mesh mesh = meshed(hall_with_room(0), 0.4);
+    std::vector<std::vector<double>> radiosity(1);
+    for (const Patch& patch : mesh.patches) {
+        const glm::dvec3 normal = mesh.surfaces[patch.surface].normal;
+        radiosity[0].push_back(is_shut_in(mesh.centroid(patch) + 1e-3 * normal) ? 0 : 1);
+    }
+    GatherSettings how;
+    how.resolution = 32;
+    Gather gather(mesh, radiosity, how, mp1map::Device::open(""));
+    std::vector<SurfacePoint> points;
+    for (std::uint32_t i = 0; i < mesh.patches.size(); ++i)
+        if (radiosity[0][i] == 0) points.push_back({mesh.centroid(mesh.patches[i]), i, i});
+
+    const auto irradiance = gather.irradiance(points, [](std::size_t) { return true; });
+
+    ASSERT_TRUE(irradiance);
+    ASSERT_GT(points.size(), 50u);
+    EXPECT_EQ(std::ranges::max(irradiance->front()), 0);
+}
+
 // The hall as bright as it gets, the room as dark as it should be.
-TEST(SealedRoom, GetsNoLightFromTheLightmapOverWallsWithoutThickness) {
+TEST(SealedRooms, GetNoLightFromTheLightmapOverWallsWithoutThickness) {
     const Mesh mesh = meshed(hall_with_room(0), 0.4);
     Solution solution;
     solution.bands = {"Y"};

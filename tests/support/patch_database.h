@@ -73,6 +73,7 @@ inline device::Shot shot_from(glm::dvec3 origin, glm::dvec3 normal) {
     }
     shot.status = kRunning;
     shot.plane = -1;
+    shot.reached = -1;
     return shot;
 }
 
