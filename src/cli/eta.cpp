@@ -7,9 +7,7 @@
 
 namespace hemirad {
 
-bool is_enough_to_foretell(double seconds, double share) {
-    return seconds >= 3 && share >= 0.01;
-}
+bool is_enough_to_foretell(double seconds, double share) { return seconds >= 3 && share >= 0.01; }
 
 std::string left_text(std::optional<double> seconds) {
     constexpr double kLongest = 3.6e6;

@@ -61,6 +61,10 @@ Work prepare(SolveOptions& options) {
     work.scene = read_scene(options.scene);
     if (options.gltf) work.cameras = read_cameras(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(work.scene);
+    if (options.mesh.element_size > options.mesh.patch_size)
+        work.scene.warnings.push_back(
+            "--element-size " + number_text(options.mesh.element_size) + " is above --patch-size " +
+            number_text(options.mesh.patch_size) + ": a patch is its own element");
     work.mesh = build_mesh(work.scene, options.mesh);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
     for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);

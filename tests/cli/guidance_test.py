@@ -57,7 +57,7 @@ class Lights(Guidance):
                       self.run_hemirad("info", "lit.gltf").stdout)
 
     def test_where_nothing_else_emits_the_refusal_says_so(self):
-        self.write("lit.gltf", with_lights(["Sun"], {"name": "white"}))
+        self.write("lit.gltf", with_lights(["Sun"], scenes.lamp() | {"emissiveFactor": [0, 0, 0]}))
         result = self.solve(scene="lit.gltf")
         self.assertEqual(1, result.returncode)
         self.assertEqual(
@@ -86,6 +86,69 @@ class Unshot(Guidance):
         result = self.solve("--tolerance", "0.09", "--quiet")
         self.assert_done(result)
         self.assertEqual("", result.stderr)
+
+
+class Words(Guidance):
+    def test_a_misspelt_option_or_command_is_answered_with_the_nearest(self):
+        for arguments, says in {
+                ("solve", "scene.obj", "--qualty", "high"):
+                    '"--qualty" (did you mean --quality?); see hemirad solve --help',
+                ("solve", "scene.obj", "--pad=3"): '"--pad=3" (did you mean --padding?)',
+                ("solv", "scene.obj"): 'unknown command "solv" (did you mean solve?); see',
+                ("solve", "scene.obj", "--zzz"): 'unknown option "--zzz"; see hemirad solve --help',
+        }.items():
+            with self.subTest(arguments=arguments):
+                self.assertIn(says, self.refusal(*arguments))
+
+    def test_values_are_refused_with_what_is_taken_instead(self):
+        for arguments, says in {
+                ("-o", "out.png"): "a name ending in .exr, .glb or .gltf",
+                ("-o", "out.png", "--gltf", "a.glb"): "expected a name ending in .exr",
+                ("--snapshot-every", "x"): "a number of shots, such as 100, or of seconds, such as "
+                                           "10s",
+                ("--memory-limit", "50M"): "no option gets below the 243 MiB of the program and "
+                                           "its compiler",
+        }.items():
+            with self.subTest(arguments=arguments):
+                self.assertTrue(self.refusal("solve", "scene.obj", *QUICK, *arguments).endswith(says))
+
+    def test_a_folder_is_called_one(self):
+        (self.folder / "out").mkdir()
+        result = self.solve("-o", "out")
+        self.assertEqual((3, "out: is a folder\n"), (result.returncode, result.stderr))
+
+    def test_what_is_no_gltf_at_all_is_told_so(self):
+        self.write("a.glb", "\x7fELF")
+        self.assertEqual("a.glb: glTF: starts neither as GLB nor as JSON",
+                         self.refusal("info", "a.glb"))
+
+    def test_elements_above_patches_are_warned_of(self):
+        self.assertIn("warning: --element-size 1 is above --patch-size 0.5: a patch is its own "
+                      "element", self.solve("--element-size", "1").stderr)
+        self.assertNotIn("warning", self.solve("--element-size", "0.5").stderr)
+
+    def test_extents_tell_millimetres_from_metres(self):
+        self.write("big.obj", scenes.obj(vertices="".join(
+            f"v {4000 * x} {2700 * y} {5000 * z}\n" for y in (0, 1)
+            for x, z in ((0, 0), (1, 0), (1, 1), (0, 1)))))
+        self.assertIn("\nextent       4000 x 2700 x 5000 m\n",
+                      self.run_hemirad("info", "big.obj").stdout)
+        self.assertIn(", open, 1 x 1 x 1 m\n", self.solve().stderr)
+
+    def test_info_has_readable_numbers_and_names_what_solve_would_refuse(self):
+        told = self.run_hemirad("info", "scene.obj", "--memory-limit", "1G").stdout
+        self.assertIn("R: emits 3.141593 W", told)
+        self.assertIn("; limit 1.0 GiB\n", told)
+        self.write("scene.mtl", scenes.MATERIALS.replace("Ke 1 1 1", ""))
+        self.assertIn("\nlights       0: nothing emits light, solve will refuse\n",
+                      self.run_hemirad("info", "scene.obj").stdout)
+
+    def test_help_lists_options_under_headings(self):
+        for command, headings in (("solve", ("Output", "Accuracy", "Mesh", "Lightmap", "Machine")),
+                                  ("info", ("Accuracy", "Mesh", "Lightmap", "Machine"))):
+            told = self.run_hemirad(command, "--help").stdout
+            for heading in headings:
+                self.assertEqual(1, told.count(f"\n{heading}:\n"), heading)
 
 
 if __name__ == "__main__":
