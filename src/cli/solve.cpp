@@ -74,6 +74,15 @@ Work prepare(SolveOptions& options) {
     return work;
 }
 
+/// A file of many objects that fill the atlas each is told in one line; the report has them all.
+std::vector<std::string> moved_in_short(const std::vector<std::string>& moved) {
+    constexpr std::size_t kInFull = 3;
+    if (moved.size() <= kInFull) return moved;
+    std::string line = std::to_string(moved.size()) + " objects: ";
+    for (std::size_t i = 0; i < kInFull; ++i) line += moved[i] + "; ";
+    return {line + "and " + std::to_string(moved.size() - kInFull) + " more, which --report lists"};
+}
+
 void require_light(const Work& work) {
     if (const auto fault = uncountable_light(work.mesh))
         throw InputError(work.scene.file + ": " + *fault);
@@ -386,6 +395,7 @@ int solve(SolveOptions options) {
     const Stopwatch total;
     auto work = prepare(options);
     print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
+    print_warnings(std::cerr, moved_in_short(work.layout.moved));
     require_light(work);
     check_channels(options, work.mesh);
     const double preparing = total.seconds();
@@ -407,6 +417,8 @@ int solve(SolveOptions options) {
     outcome.memory = work.memory;
     outcome.seconds.prepare = preparing;
     outcome.warnings = warnings_of(work.scene, work.mesh);
+    outcome.warnings.insert(outcome.warnings.end(), work.layout.moved.begin(),
+                            work.layout.moved.end());
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
     warn_of_missing_light(options, outcome);
