@@ -6,6 +6,7 @@
 #include "cli/exit_codes.h"
 #include "cli/formfactors.h"
 #include "cli/info.h"
+#include "cli/near_names.h"
 #include "cli/render.h"
 #include "cli/solve.h"
 #include "cli/sweep.h"
@@ -17,6 +18,19 @@
 namespace hemirad {
 namespace {
 
+/// What may have been meant, of the command's options or commands.
+std::string guess(const CLI::App& command, const std::string& stray) {
+    std::vector<std::string> names;
+    for (const auto* const option : command.get_options())
+        for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+    if (!stray.starts_with('-')) {
+        names.clear();
+        for (const auto* const one : command.get_subcommands({})) names.push_back(one->get_name());
+    }
+    const auto near = near_name(names, stray.substr(0, stray.find('=')));
+    return near ? " (did you mean " + *near + "?)" : "";
+}
+
 /// CLI11 would name every stray argument in one breath, the values of unknown options included.
 void reject_stray_arguments(const CLI::App& app) {
     const auto stray = app.remaining(true);
@@ -27,8 +41,10 @@ void reject_stray_arguments(const CLI::App& app) {
     const std::string kind = is_option          ? "unknown option"
                              : commands.empty() ? "unknown command"
                                                 : "one argument too many,";
-    throw InputError("hemirad: " + kind + " \"" + printable(stray.front()) + "\"; see hemirad" +
-                     name + " --help");
+    const auto& command = commands.empty() ? app : *commands.front();
+    throw InputError("hemirad: " + kind + " \"" + printable(stray.front()) + '"' +
+                     (is_option || commands.empty() ? guess(command, stray.front()) : "") +
+                     "; see hemirad" + name + " --help");
 }
 
 void flush(std::ostream& out) {

@@ -3,7 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/text.h"
+
 namespace hemirad {
+
+bool is_enough_to_foretell(double seconds, double share) { return seconds >= 3 && share >= 0.01; }
+
+std::string left_text(std::optional<double> seconds) {
+    constexpr double kLongest = 3.6e6;
+    if (!seconds || !(*seconds <= kLongest)) return {};
+    return ", " + duration_text(*seconds) + " left";
+}
 
 void Eta::note(double seconds, double unshot_fraction) {
     constexpr double kSpacing = 0.05;  // s; shots can be far shorter than that
@@ -16,6 +26,9 @@ std::optional<double> Eta::remaining() const {
     const auto& last = samples_.back();
     const auto left = last.log_unshot - std::log(tolerance_);
     if (left <= 0) return 0;
+    const double come = samples_.front().log_unshot - last.log_unshot;
+    if (!is_enough_to_foretell(last.seconds - samples_.front().seconds, come / (come + left)))
+        return {};
     const double half = (samples_.front().seconds + last.seconds) / 2;
     const auto middle = std::find_if(samples_.rbegin() + 1, samples_.rend(),
                                      [half](const Sample& one) { return one.seconds <= half; });

@@ -40,6 +40,7 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh,
     out << "file         " << printable(scene.file) << '\n'
         << "faces        " << mesh.face_count << " (" << mesh.dropped_degenerate
         << " degenerate and " << mesh.dropped_duplicate << " duplicate ones dropped)\n"
+        << "extent       " << extent_text(mesh) << '\n'
         << "objects      " << scene.objects.size() << '\n'
         << "materials    " << scene.materials.size() << '\n'
         << "surfaces     " << mesh.surfaces.size() << '\n'
@@ -96,7 +97,7 @@ void print_bands(std::ostream& out, const Mesh& mesh) {
     out << '\n';
     for (std::size_t band = 0; band < mesh.bands.size(); ++band)
         out << "  " << printable(mesh.bands[band]) << ": emits "
-            << number_text(emitted_flux(mesh, band)) << " W, solved as "
+            << rounded_text(emitted_flux(mesh, band)) << " W, solved as "
             << printable(mesh.bands[plan.solved[plan.solution[0][band]].band]) << '\n';
 }
 
@@ -114,12 +115,14 @@ void print_lights(std::ostream& out, const Mesh& mesh, Lights wanted) {
     const auto plan = plan_bands(mesh, {.lights = how});
     const auto& names = plan.lights.names;
     out << "lights       " << names.size();
-    if (!names.empty())
+    if (names.empty())
+        out << ": nothing emits light, solve will refuse";
+    else
         out << "; --lights " << name_of(how) << " solves " << counted(plan.solved.size(), "band");
     out << '\n';
     for (std::uint32_t i = 0; i < std::min(names.size(), kInFull); ++i)
         out << "  " << printable(names[i]) << ": emits "
-            << number_text(flux_of(mesh, plan.lights, i)) << " W in all bands\n";
+            << rounded_text(flux_of(mesh, plan.lights, i)) << " W in all bands\n";
     if (names.size() > kInFull) out << "  and " << names.size() - kInFull << " more\n";
 }
 
@@ -171,7 +174,8 @@ void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
     const auto memory = estimate_memory(mesh, layout, options, device.summary());
     out << "device       " << printable(device.summary().name) << ", "
         << bytes_text(device.summary().global_memory) << '\n'
-        << "memory       " << memory_text(memory) << "; free " << bytes_text(limit) << '\n';
+        << "memory       " << memory_text(memory) << (options.memory_limit ? "; limit " : "; free ")
+        << bytes_text(limit) << '\n';
     if (const auto doubt = doubt_of_time(mesh, options, memory, limit)) {
         out << "time         " << *doubt << '\n';
         return;

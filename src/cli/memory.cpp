@@ -177,8 +177,15 @@ std::string shortage(const std::string& scene, std::uint64_t bytes, const std::s
     return scene + ": needs about " + bytes_text(bytes) + ", " + than;
 }
 
-/// Of what can be made smaller.
-std::string advice_on(const MemoryParts& parts) {
+/// Of what can be made smaller; where nothing helps, that.
+std::string advice_on(const MemoryEstimate& estimate, std::uint64_t limit) {
+    const MemoryParts& parts = estimate.parts;
+    std::uint64_t least = estimate.compiler_bytes;
+    for (const MemoryPart& part : parts)
+        if (part.advice.empty()) least += part.bytes;
+    if (least > limit)
+        return "; no option gets below the " + bytes_text(least) +
+               " of the program and its compiler";
     const auto by_advice = [](const MemoryPart& a, const MemoryPart& b) {
         return std::pair(!a.advice.empty(), a.bytes) < std::pair(!b.advice.empty(), b.bytes);
     };
@@ -240,7 +247,7 @@ void require_memory(const std::string& scene, const MemoryEstimate& estimate,
         throw InputError(shortage(scene, needed,
                                   options.memory_limit ? "--memory-limit is " + bytes_text(limit)
                                                        : bytes_text(limit) + " are free") +
-                         advice_on(estimate.parts));
+                         advice_on(estimate, limit));
     if (estimate.device_bytes > device.global_memory)
         throw InputError(shortage(scene, estimate.device_bytes,
                                   device.name + " has " + bytes_text(device.global_memory)) +

@@ -40,6 +40,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+std::optional<std::string> near_name(const std::vector<std::string>& names, std::string_view name) {
+    constexpr std::size_t kFirstLetters = 4;  // "--" and two more
+    const auto differs = [&](const std::string& n) {
+        const bool begins = name.size() >= kFirstLetters && n.starts_with(name);
+        return begins ? 0 : edit_distance(n, name);
+    };
+    const auto nearest = std::ranges::min_element(names, {}, differs);
+    if (nearest == names.end() || 3 * differs(*nearest) > nearest->size()) return {};
+    return *nearest;
+}
+
 std::size_t index_of_name(const std::vector<std::string>& names, const std::string& scene,
                           std::string_view option, std::string_view name) {
     const auto found = std::ranges::find(names, name);

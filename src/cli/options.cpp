@@ -8,6 +8,10 @@ CLI::App& add_command(CLI::App& app, const std::string& name, const std::string&
     return *app.add_subcommand(name, meaning);
 }
 
+void begin_group(CLI::App& command, const std::string& heading) {
+    command.option_defaults()->group(heading);
+}
+
 void on_chosen(CLI::App& command, std::function<void()> choose) {
     command.callback(std::move(choose));
 }

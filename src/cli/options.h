@@ -25,6 +25,9 @@ void on_chosen(CLI::App& command, std::function<void()> choose);
 /// Called before that, when the arguments after the command's name are understood.
 void on_understood(CLI::App& command, std::function<void()> conclude);
 
+/// Under which heading --help lists the options that are added from here on.
+void begin_group(CLI::App& command, const std::string& heading);
+
 /// How an option appears in --help.
 struct OptionText {
     std::string names;        ///< "-o,--output"

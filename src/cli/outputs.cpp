@@ -97,7 +97,11 @@ void check_ending(std::string_view option, const fs::path& file,
     if (std::ranges::count(endings, file.extension().native()) > 0) return;
     if (fs::exists(file) && !fs::is_regular_file(file)) return;
     std::string names;
-    for (const auto ending : endings) names += (names.empty() ? "" : " or ") + std::string(ending);
+    for (const auto* ending = endings.begin(); ending != endings.end(); ++ending)
+        names += (names.empty()                 ? ""
+                  : ending + 1 == endings.end() ? " or "
+                                                : ", ") +
+                 std::string(*ending);
     reject({option, file.native()}, "a name ending in " + names);
 }
 
@@ -114,7 +118,10 @@ void check_distinct(const fs::path& scene, const std::vector<fs::path>& files) {
 }
 
 void check_outputs(const SolveOptions& options) {
-    check_ending("--output", options.output, {".exr"});
+    if (options.gltf)
+        check_ending("--output", options.output, {".exr"});
+    else
+        check_ending("--output", options.output, {".exr", ".glb", ".gltf"});
     if (options.gltf) check_ending("--gltf", *options.gltf, {".glb", ".gltf"});
     if (options.preview) check_ending("--preview", *options.preview, {".png"});
     if (options.faces) check_ending("--faces", *options.faces, {".csv"});

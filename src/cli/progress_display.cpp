@@ -8,8 +8,6 @@
 #include <cstdio>
 #include <iostream>
 
-#include "cli/text.h"
-
 namespace hemirad {
 namespace {
 
@@ -54,12 +52,10 @@ void ProgressDisplay::clear() {
 }
 
 std::string ProgressDisplay::text(std::uint64_t shots, double unshot_fraction) const {
-    const auto remaining = eta_.remaining();
-    std::array<char, 96> line{};
-    std::snprintf(line.data(), line.size(), "%llu shots, unshot %.3g %%, %s left",
-                  static_cast<unsigned long long>(shots), 100 * unshot_fraction,
-                  remaining ? duration_text(*remaining).c_str() : "?");
-    return line.data();
+    std::array<char, 64> line{};
+    std::snprintf(line.data(), line.size(), "%llu shots, unshot %.3g %%",
+                  static_cast<unsigned long long>(shots), 100 * unshot_fraction);
+    return line.data() + left_text(eta_.remaining());
 }
 
 /// How far the logarithm of the unshot fraction has come from 1 to the tolerance.

@@ -9,6 +9,7 @@
 
 #include "cli/exit_codes.h"
 #include "cli/outputs.h"
+#include "cli/summary.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "errors.h"
@@ -105,8 +106,9 @@ Camera named_camera(const LitScene& lit, const std::string& name) {
     if (!name.empty() && found != cameras.end()) return *found;
     std::string names;
     for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
-    const std::string has = cameras.empty() ? "has no camera" : "has the cameras " + names;
-    fail(lit.scene, (name.empty() ? "" : "no camera \"" + printable(name) + "\"; it ") + has +
+    if (cameras.empty()) fail(lit.scene, "has no cameras; --eye X,Y,Z needs none");
+    fail(lit.scene, (name.empty() ? "" : "no camera \"" + printable(name) + "\"; it ") +
+                        "has the cameras " + names +
                         "; --camera names one, --eye X,Y,Z needs none");
 }
 
@@ -133,6 +135,21 @@ void choose_size(const RenderOptions& options, const Camera& camera, RenderSetti
     }
 }
 
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+}
+
+std::vector<std::string> warnings_of(const RenderOptions& options, const Lightmap& rendered) {
+    const auto all_zero = [](const std::vector<float>& values) {
+        return std::ranges::all_of(values, [](float value) { return value <= 0; });
+    };
+    if (all_zero(rendered.coverage))
+        return {options.output.string() + ": the camera sees nothing of the scene"};
+    if (std::ranges::all_of(rendered.values, all_zero))
+        return {options.output.string() + ": nothing that the camera sees is lit"};
+    return {};
+}
+
 void write_radiance(const RenderOptions& options, const LitScene& lit, const Camera& camera,
                     const Lightmap& rendered) {
     write_exr(options.output, rendered,
@@ -143,14 +160,17 @@ void write_radiance(const RenderOptions& options, const LitScene& lit, const Cam
                {"unit", std::string("W/(m^2 sr)")}});
 }
 
-/// What a second picture needs to be shown alike.
-std::string write_picture(const RenderOptions& options, const Lightmap& rendered) {
+/// Its size, that of a scale below it included, and what a second one needs to be shown alike.
+std::string write_picture(const RenderOptions& options, const Lightmap& rendered,
+                          const std::string& camera) {
     const double exposure = options.exposure.value_or(automatic_exposure(rendered));
     const Picture picture = options.false_colour
                                 ? false_colours_of(rendered, options.largest, "irradiance, W/m^2")
                                 : picture_of(rendered, exposure);
     write_atomically(options.output, [&](std::ostream& stream) { write_png(stream, picture); });
-    return options.false_colour ? "" : ", --exposure " + number_text(exposure);
+    return size_text(picture.width, picture.height) + " from " + camera +
+           (options.false_colour ? ", its scale included"
+                                 : ", --exposure " + number_text(exposure));
 }
 
 void check_output(RenderOptions& options) {
@@ -172,14 +192,13 @@ int render_scene(RenderOptions options) {
     choose_size(options, camera, options.render);
     if (options.false_colour) options.render.shown = Shown::irradiance;
     const Lightmap rendered = render(lit, camera, options.render);
-    std::string note;
+    std::string note = size_text(rendered.width, rendered.height) + " from " + camera.name;
     if (options.output.extension() == ".exr")
         write_radiance(options, lit, camera, rendered);
     else
-        note = write_picture(options, rendered);
-    if (!options.quiet)
-        std::cerr << printable(options.output.string()) << ": " << rendered.width << " x "
-                  << rendered.height << " from " << camera.name << note << '\n';
+        note = write_picture(options, rendered, camera.name);
+    print_warnings(std::cerr, warnings_of(options, rendered));
+    if (!options.quiet) std::cerr << printable(options.output.string()) << ": " << note << '\n';
     return kDone;
 }
 

@@ -106,6 +106,7 @@ Json seconds_json(const Outcome& outcome) {
     Json stages = Json::object();
     for (const auto& [kernel, spent] : seconds.per_kernel) stages[kernel] = spent.first;
     return {{"total", seconds.total},
+            {"prepare", seconds.prepare},
             {"build_kernels", seconds.build_kernels},
             {"solve", seconds.solve},
             {"gather", outcome.gathered ? outcome.gathered->seconds : 0},

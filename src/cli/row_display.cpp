@@ -1,8 +1,10 @@
 #include "cli/row_display.h"
 
 #include <iostream>
+#include <optional>
 #include <utility>
 
+#include "cli/eta.h"
 #include "cli/text.h"
 
 namespace hemirad {
@@ -44,9 +46,10 @@ std::string row_text(std::size_t done, std::size_t all, double seconds, bool wit
     const auto filled = std::size_t(double(kWidth) * share);
     const std::string bar =
         "[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] ";
-    const std::string left = share > 0 ? duration_text(seconds * (1 - share) / share) : "?";
-    return (with_bar ? bar : "") + std::to_string(done) + " of " + counted(all, noun) + ", " +
-           left + " left";
+    std::optional<double> left;
+    if (is_enough_to_foretell(seconds, share)) left = seconds * (1 - share) / share;
+    return (with_bar ? bar : "") + std::to_string(done) + " of " + counted(all, noun) +
+           left_text(left);
 }
 
 }  // namespace hemirad

@@ -29,7 +29,7 @@ class RowDisplay {
     bool on_screen_ = false;
 };
 
-/// "[====    ] 10 of 40 rows, 3 s left"; the bar only where asked for.
+/// "[====    ] 10 of 40 rows, 3 s left"; the bar only where asked for, the time once it is known.
 std::string row_text(std::size_t done, std::size_t all, double seconds, bool with_bar,
                      const std::string& noun = "row");
 

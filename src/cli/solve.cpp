@@ -61,6 +61,10 @@ Work prepare(SolveOptions& options) {
     work.scene = read_scene(options.scene);
     if (options.gltf) work.cameras = read_cameras(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(work.scene);
+    if (options.mesh.element_size > options.mesh.patch_size)
+        work.scene.warnings.push_back(
+            "--element-size " + number_text(options.mesh.element_size) + " is above --patch-size " +
+            number_text(options.mesh.patch_size) + ": a patch is its own element");
     work.mesh = build_mesh(work.scene, options.mesh);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
     for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);
@@ -70,11 +74,23 @@ Work prepare(SolveOptions& options) {
     return work;
 }
 
+/// A file of many objects that fill the atlas each is told in one line; the report has them all.
+std::vector<std::string> moved_in_short(const std::vector<std::string>& moved) {
+    constexpr std::size_t kInFull = 3;
+    if (moved.size() <= kInFull) return moved;
+    std::string line = std::to_string(moved.size()) + " objects: ";
+    for (std::size_t i = 0; i < kInFull; ++i) line += moved[i] + "; ";
+    return {line + "and " + std::to_string(moved.size() - kInFull) + " more, which --report lists"};
+}
+
 void require_light(const Work& work) {
     if (const auto fault = uncountable_light(work.mesh))
         throw InputError(work.scene.file + ": " + *fault);
     if (emits_light(work.mesh)) return;
-    throw InputError(work.scene.file + ": nothing emits light, so there is nothing to solve");
+    throw InputError(work.scene.file + ": nothing emits light, so there is nothing to solve" +
+                     (work.scene.lights_not_taken > 0
+                          ? ": lights of KHR_lights_punctual are not taken, emissive faces are"
+                          : ""));
 }
 
 std::string with_fewer_lights(const Mesh& mesh, Lights lights) {
@@ -347,6 +363,17 @@ void warn_of_faint_light(const SolveOptions& options, Outcome& outcome) {
     print_warnings(std::cerr, faint);
 }
 
+/// However it was stopped: who opens the picture later does not see why it is dark.
+void warn_of_missing_light(const SolveOptions& options, Outcome& outcome) {
+    constexpr double kFaultless = 0.1;
+    const double unshot = outcome.solution.unshot_fraction;
+    if (unshot <= kFaultless) return;
+    outcome.warnings.push_back(options.output.string() + ": " + percent_text(unshot) +
+                               " of the light is still to be shot, the picture is darker than it "
+                               "will be");
+    print_warnings(std::cerr, {outcome.warnings.back()});
+}
+
 /// What is there from earlier is better than what a mesh without its splits would give.
 int stopped_before_resuming(const SolveOptions& options, const Interrupts& interrupts) {
     const auto fault =
@@ -368,8 +395,10 @@ int solve(SolveOptions options) {
     const Stopwatch total;
     auto work = prepare(options);
     print_warnings(std::cerr, warnings_of(work.scene, work.mesh));
+    print_warnings(std::cerr, moved_in_short(work.layout.moved));
     require_light(work);
     check_channels(options, work.mesh);
+    const double preparing = total.seconds();
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
     check_memory(work, options, device.summary());
@@ -386,9 +415,13 @@ int solve(SolveOptions options) {
     options.solver.shooter_samples = outcome.accuracy.shooter_samples;
     options.solver.sampling_error = outcome.accuracy.sampling_error;
     outcome.memory = work.memory;
+    outcome.seconds.prepare = preparing;
     outcome.warnings = warnings_of(work.scene, work.mesh);
+    outcome.warnings.insert(outcome.warnings.end(), work.layout.moved.begin(),
+                            work.layout.moved.end());
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
+    warn_of_missing_light(options, outcome);
     if (options.gather) outcome.gathered = gathered_or_saved(solving, options, outcome);
     if (!interrupts.requested()) warn_of_missing_gather(options, outcome);
     const Stopwatch writing;

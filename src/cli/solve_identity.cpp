@@ -104,7 +104,8 @@ std::vector<std::pair<std::string, std::string>> settings_of(const SolveOptions&
             {"--weld", or_word(options.mesh.weld, "by the file")},
             {"--salvo", std::to_string(salvo)},
             {"--lights", name_of(solver.parts.lights)},
-            {"--layers", std::string(tells_direct ? "direct or indirect" : "neither direct nor indirect") +
+            {"--layers",
+             std::string(tells_direct ? "direct or indirect" : "neither direct nor indirect") +
                  (solver.count_shots ? ", and shots" : "")},
             {"--evaluate", solver.variants.incremental ? "incremental" : "direct"},
             {"--distance", solver.variants.constant_distance ? "constant" : "true"}};

@@ -5,6 +5,7 @@
 
 #include "cli/mesh_options.h"
 #include "cli/text.h"
+#include "errors.h"
 
 namespace hemirad {
 namespace {
@@ -20,6 +21,7 @@ constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
 
 void add_file_options(CLI::App& command, SolveOptions& options) {
     add_scene(command, options.scene);
+    begin_group(command, "Output");
     add_text(command,
              {"-o,--output", "FILE.exr|.glb|.gltf",
               "the lightmap, or --gltf with the lightmap beside it [SCENE's name .exr, here]"},
@@ -35,6 +37,7 @@ void add_file_options(CLI::App& command, SolveOptions& options) {
 
 void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     auto& solver = options.solver;
+    begin_group(command, "Accuracy");
     auto* const quality = add_quality(
         command, "resolution, samples and sampling error in one [medium]", options.quality);
     auto* const target =
@@ -57,12 +60,14 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
         command,
         {"--sampling-error", "E", "closed forms where one hemisphere errs by more [by --quality]"},
         [&](const OptionValue& value) { solver.sampling_error = positive_number(value); });
+    begin_group(command, "Mesh");
     add_mesh_options(command, options.mesh);
     add_element_size(command, options.mesh);
     add_split(command, options.mesh);
 }
 
 void add_chart_options(CLI::App& command, ChartSettings& charts) {
+    begin_group(command, "Lightmap");
     add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch's edge]"},
               [&](const OptionValue& value) { charts.texel_size = positive_number(value); });
     add_value(command,
@@ -112,6 +117,7 @@ void add_memory_limit(CLI::App& command, std::optional<std::uint64_t>& limit) {
 }
 
 void add_stop_options(CLI::App& command, SolverSettings& solver) {
+    begin_group(command, "Ends and limits");
     add_value(command, {"--tolerance", "T", "stop where unshot / emitted flux is below T [1e-3]"},
               [&](const OptionValue& value) { solver.tolerance = fraction(value); });
     add_value(command, {"--max-shots", "N", "stop after N shots"},
@@ -121,12 +127,17 @@ void add_stop_options(CLI::App& command, SolverSettings& solver) {
 }
 
 SnapshotInterval snapshot_interval(const OptionValue& value) {
-    if (!value.text.ends_with('s')) return {whole_number(value, 1, kAny), 0};
-    const OptionValue seconds{value.option, value.text.substr(0, value.text.size() - 1)};
-    return {0, positive_number(seconds)};
+    constexpr auto* kAccepted = "a number of shots, such as 100, or of seconds, such as 10s";
+    try {
+        if (!value.text.ends_with('s')) return {whole_number(value, 1, kAny), 0};
+        return {0, positive_number({value.option, value.text.substr(0, value.text.size() - 1)})};
+    } catch (const InputError&) {
+        reject(value, kAccepted);
+    }
 }
 
 void add_checkpoint_options(CLI::App& command, SolveOptions& options) {
+    begin_group(command, "On the way");
     add_text(
         command,
         {"--checkpoint", "FILE", "where to leave, now and then and at the end, what to go on from"},
@@ -158,17 +169,17 @@ void wish_for(const OptionValue& layer, SolveOptions& options) {
 }
 
 void add_layers(CLI::App& command, SolveOptions& options) {
-    add_value(
-        command,
-        {"--layers", "NAME,...",
-         "further layers of the EXR: direct, indirect, emission, normal, position, shots, error"},
-        [&](const OptionValue& value) {
-            for (std::size_t first = 0; first <= value.text.size();) {
-                const auto end = std::min(value.text.find(',', first), value.text.size());
-                wish_for({value.option, value.text.substr(first, end - first)}, options);
-                first = end + 1;
-            }
-        });
+    add_value(command,
+              {"--layers", "NAME,...",
+               "further layers of the EXR: direct, indirect, emission, normal, position, shots, "
+               "error; coverage is always there"},
+              [&](const OptionValue& value) {
+                  for (std::size_t first = 0; first <= value.text.size();) {
+                      const auto end = std::min(value.text.find(',', first), value.text.size());
+                      wish_for({value.option, value.text.substr(first, end - first)}, options);
+                      first = end + 1;
+                  }
+              });
 }
 
 void add_pixel_options(CLI::App& command, SolveOptions& options) {
@@ -179,12 +190,14 @@ void add_pixel_options(CLI::App& command, SolveOptions& options) {
 }
 
 void add_picture_options(CLI::App& command, SolveOptions& options) {
+    begin_group(command, "Lightmap");
     add_value(command,
               {"--quantity", "irradiance|radiosity", "what the lightmap holds, W/m^2 [irradiance]"},
               [&](const OptionValue& value) {
                   options.quantity = static_cast<Quantity>(one_of(value, kQuantities));
               });
     add_pixel_options(command, options);
+    begin_group(command, "On the way");
     add_value(command,
               {"--snapshot-every", "SHOTS|SECONDSs",
                "write the picture so far, what is unshot spread evenly"},
@@ -236,6 +249,7 @@ void add_variant_options(CLI::App& command, Variants& variants) {
 }
 
 void add_machine_options(CLI::App& command, SolveOptions& options) {
+    begin_group(command, "Machine");
     add_array_options(command, options.device, options.compute_units, options.solver.pe_array);
     add_variant_options(command, options.solver.variants);
     add_value(command,
@@ -265,6 +279,7 @@ std::string layers_text(const SolveOptions& options) {
 }
 
 void add_talk_options(CLI::App& command, SolveOptions& options) {
+    begin_group(command, "Messages");
     auto* const quiet =
         add_flag(command, "-q,--quiet", options.quiet, "say nothing but warnings and faults");
     exclude(add_flag(command, "-v,--verbose", options.verbose, "say more"), quiet);
@@ -293,6 +308,7 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
 void add_cost_options(CLI::App& command, SolveOptions& options) {
     add_scene(command, options.scene);
     add_work_options(command, options);
+    begin_group(command, "Lightmap");
     add_pixel_options(command, options);
     add_machine_options(command, options);
 }
@@ -319,12 +335,15 @@ CLI::Option* add_resolution(CLI::App& command, std::uint32_t& resolution) {
 }
 
 CLI::Option* add_shooter_samples(CLI::App& command, std::uint32_t& samples) {
-    return add_value(
-        command, {"--shooter-samples", "M|auto", "hemispheres a shooting patch, M x M [auto]"},
-        [&samples, automatic = samples](const OptionValue& value) {
-            samples = value.text == "auto" ? automatic
-                                           : static_cast<std::uint32_t>(whole_number(value, 1, 64));
-        });
+    return add_value(command,
+                     {"--shooter-samples", "M|auto",
+                      "hemispheres a shooting patch, M x M; auto: by --quality, where proxels are "
+                      "counted by what is near [auto]"},
+                     [&samples, automatic = samples](const OptionValue& value) {
+                         samples = value.text == "auto"
+                                       ? automatic
+                                       : static_cast<std::uint32_t>(whole_number(value, 1, 64));
+                     });
 }
 
 void add_lights(CLI::App& command, Lights& lights) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "cli/text.h"
+#include "scene/bounds.h"
 #include "scene/printable.h"
 #include "solver/bands.h"
 
@@ -77,6 +78,14 @@ void print_warnings(std::ostream& out, const std::vector<std::string>& warnings)
     for (const auto& warning : warnings) out << "warning: " << printable(warning) << '\n';
 }
 
+std::string extent_text(const Mesh& mesh) {
+    const Bounds bounds = bounds_of(mesh.vertices);
+    const glm::dvec3 size = bounds.most - bounds.least;
+    std::array<char, 96> text{};
+    std::snprintf(text.data(), text.size(), "%.4g x %.4g x %.4g m", size.x, size.y, size.z);
+    return text.data();
+}
+
 std::string time_text(const Forecast& forecast) {
     const auto whole = [](double count) { return std::llround(count); };
     return "about " + duration_text(forecast.seconds) + " for " +
@@ -88,7 +97,7 @@ void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh
                 const mp1map::DeviceSummary& device, const mp1map::PeArray& array) {
     out << printable(options.scene.filename().string()) << ": " << size_of(mesh) << " on "
         << counted(mesh.surfaces.size(), "surface") << ", " << (mesh.closed ? "closed" : "open")
-        << '\n'
+        << ", " << extent_text(mesh) << '\n'
         << printable(device.name) << ": " << counted(device.compute_units, "compute unit") << ", "
         << array.description() << '\n'
         << options.solver.resolution << "^2 proxels, "

@@ -20,6 +20,9 @@ void print_warnings(std::ostream& out, const std::vector<std::string>& warnings)
 void print_plan(std::ostream& out, const SolveOptions& options, const Mesh& mesh,
                 const mp1map::DeviceSummary& device, const mp1map::PeArray& array);
 
+/// "4 x 2.7 x 5 m", along the axes: who sees 4000 has millimetres.
+std::string extent_text(const Mesh& mesh);
+
 /// "about " how long shooting takes, and how many shots that is.
 std::string time_text(const Forecast& forecast);
 

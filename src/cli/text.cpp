@@ -23,6 +23,10 @@ std::string number_text(double number) {
     return {text.data(), end};
 }
 
+std::string rounded_text(double number) { return formatted("%.7g", number); }
+
+std::string percent_text(double fraction) { return formatted("%.3g %%", 100 * fraction); }
+
 std::string bytes_text(std::uint64_t bytes) {
     constexpr std::array kUnits{"B", "KiB", "MiB", "GiB", "TiB"};
     double amount = static_cast<double>(bytes);

@@ -9,6 +9,12 @@ namespace hemirad {
 /// The shortest text that reads back as the same number.
 std::string number_text(double number);
 
+/// To seven digits, for people: 31.415926535 -> "31.41593".
+std::string rounded_text(double number);
+
+/// 0.98765 -> "98.8 %".
+std::string percent_text(double fraction);
+
 /// 1536 -> "1.5 KiB".
 std::string bytes_text(std::uint64_t bytes);
 

@@ -180,7 +180,7 @@ bool is_device_or_pipe(const fs::path& path) {
 void require_replaceable(const fs::path& path) {
     std::error_code ignored;
     if (!path.has_filename()) fail(path, "names a folder, not a file");
-    if (fs::is_directory(path, ignored)) fail(path, EISDIR);
+    if (fs::is_directory(path, ignored)) fail(path, "is a folder");
     if (fs::exists(path, ignored) && access(path.c_str(), W_OK) != 0) fail(path, errno);
 }
 

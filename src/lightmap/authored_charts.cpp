@@ -211,9 +211,9 @@ class Placer {
     }
 
     void warn_of_atlas(std::uint32_t object, std::uint32_t other, std::uint32_t atlas) {
-        layout_.warnings.push_back(name_of(object) + ": its TEXCOORD_1 claim texels of \"" +
-                                   scene_.objects[other] + "\": it goes to lightmap " +
-                                   std::to_string(atlas));
+        layout_.moved.push_back(name_of(object) + ": its TEXCOORD_1 claim texels of \"" +
+                                scene_.objects[other] + "\": it goes to lightmap " +
+                                std::to_string(atlas));
     }
 
     static void hand_over(const std::vector<std::size_t>& texels, Claims& own, Claims& atlas) {

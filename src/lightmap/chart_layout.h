@@ -65,6 +65,7 @@ struct ChartLayout {
     std::vector<Chart> charts;               ///< generated ones, in the order of their surfaces
     std::vector<AuthoredTriangle> authored;  ///< in the order of Mesh::face_triangles
     std::vector<std::string> warnings;       ///< one line each, for people
+    std::vector<std::string> moved;          ///< the same, of objects that are not in their atlas
 };
 
 /// Half of the shorter cell edge that a twentieth of the charts' area is below, but not so small that

@@ -76,8 +76,17 @@ std::string one_line(const std::string& message) {
     return printable(line);
 }
 
+/// A byte order mark is what some editors put before it.
+bool begins_as_json(std::string_view text) {
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    const auto first = text.find_first_not_of(" \t\r\n");
+    return first != text.npos &&
+           std::string_view("{[\"0123456789-tfn").find(text[first]) != text.npos;
+}
+
 Json parse_json(const InputFile& file) {
     const std::string_view text = json_text(file);
+    if (!begins_as_json(text)) fail(file, "glTF", "starts neither as GLB nor as JSON");
     check_shape(file, text);
     try {
         return Json::parse(text);

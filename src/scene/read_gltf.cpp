@@ -373,6 +373,35 @@ void add_mesh(Builder& builder, const PlacedNode& node) {
     }
 }
 
+/// Of the node, whose extension is as its file has it: unchecked. Nothing where it has no light.
+std::optional<std::string> punctual_light(const GltfFile& gltf, std::size_t node) {
+    const Json& json = gltf.json["nodes"][node];
+    if (!json.contains(Json::json_pointer("/extensions/KHR_lights_punctual/light"))) return {};
+    const Json& light = json["extensions"]["KHR_lights_punctual"]["light"];
+    if (!light.is_number_unsigned()) return {};
+    const auto index = std::to_string(light.get<std::uint64_t>());
+    const std::string& name = gltf.model.nodes[node].name;
+    if (!name.empty()) return name;
+    const Json::json_pointer at("/extensions/KHR_lights_punctual/lights/" + index + "/name");
+    const bool named = gltf.json.contains(at) && gltf.json[at].is_string();
+    return named ? gltf.json[at].get<std::string>() : "light" + index;
+}
+
+/// Points, spots and suns have no faces, of which alone light comes.
+void warn_of_lights(Builder& builder, const std::vector<PlacedNode>& nodes) {
+    constexpr std::uint32_t kNamed = 3;
+    std::uint32_t& count = builder.scene.lights_not_taken;
+    std::string names;
+    for (const PlacedNode& node : nodes)
+        if (const auto name = punctual_light(builder.gltf, node.node); name && count++ < kNamed)
+            names += (names.empty() ? "" : ", ") + in_quotes(*name);
+    if (count == 0) return;
+    if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+    warn(builder.scene, "KHR_lights_punctual",
+         (count == 1 ? "a light (" : std::to_string(count) + " lights (") + names +
+             (count == 1 ? ") is" : ") are") + " not taken: light comes from emissive faces");
+}
+
 }  // namespace
 
 Scene read_gltf(const InputFile& file) {
@@ -383,6 +412,7 @@ Scene read_gltf(const InputFile& file) {
     const auto nodes = place_nodes(gltf);
     check_placed(gltf, nodes);
     for (const PlacedNode& node : nodes) add_mesh(builder, node);
+    warn_of_lights(builder, nodes);
     return std::move(builder.scene);
 }
 

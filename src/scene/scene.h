@@ -39,7 +39,8 @@ struct Scene {
     /// m; an axis of a position was rounded by this at most when it was written. 0: unknown, the
     /// file held world coordinates as floats.
     double quantum = 0;
-    std::vector<std::string> warnings;  ///< one line each, for people
+    std::uint32_t lights_not_taken = 0;  ///< glTF's points, spots and suns, of KHR_lights_punctual
+    std::vector<std::string> warnings;   ///< one line each, for people
 };
 
 }  // namespace hemirad

@@ -19,11 +19,6 @@ namespace fs = std::filesystem;
     throw InputError(printable(file.filename().string()) + ": " + reason);
 }
 
-Json json_of(const fs::path& gltf) {
-    const InputFile file = read_input_file(gltf);
-    return load_gltf(file).json;
-}
-
 fs::path exr_of(const fs::path& gltf, const Json& json) {
     const Json::json_pointer at("/asset/extras/hemirad/exr");
     if (!json.contains(at) || !json[at].is_string() || json[at] == "")
@@ -86,6 +81,44 @@ std::set<std::uint64_t> shots_kept(const fs::path& exr) {
     return found;
 }
 
+struct ImageSize {
+    std::uint32_t width = 0, height = 0;
+};
+
+/// Of the glTF's own picture of the lightmap; nothing where that is no PNG. PNG, sec. 5.2, 11.2.2.
+std::optional<ImageSize> size_in_gltf(const GltfFile& gltf, std::uint32_t atlas) {
+    constexpr std::string_view kBegin("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    if (atlas >= gltf.model.textures.size() || gltf.model.textures[atlas].source < 0) return {};
+    const auto source = static_cast<std::size_t>(gltf.model.textures[atlas].source);
+    const tinygltf::Image& image = gltf.model.images[source];
+    const std::string_view inlined(reinterpret_cast<const char*>(image.image.data()),
+                                   image.image.size());
+    const std::string_view png =
+        image.bufferView >= 0 ? view_bytes(gltf.model, image.bufferView) : inlined;
+    if (!png.starts_with(kBegin) || png.size() < kBegin.size() + 8) return {};
+    const auto word = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            value = value << 8 | static_cast<unsigned char>(png[at + i]);
+        return value;
+    };
+    return ImageSize{word(kBegin.size()), word(kBegin.size() + 4)};
+}
+
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+}
+
+/// The same charts in another size are other charts: UVs would lead to foreign texels.
+void require_size(const GltfFile& gltf, std::uint32_t atlas, const fs::path& file,
+                  const Lightmap& lightmap) {
+    const auto size = size_in_gltf(gltf, atlas);
+    if (!size || (lightmap.width == size->width && lightmap.height == size->height)) return;
+    fail(file, "has " + size_text(lightmap.width, lightmap.height) + " texels, the lightmap of " +
+                   gltf.file.name + " " + size_text(size->width, size->height) +
+                   ": it is another scene's, or solved otherwise");
+}
+
 std::string text_in(const ExrLightmap& exr, const std::string& name) {
     const auto found = exr.attributes.find(name);
     return found == exr.attributes.end() ? "" : found->second;
@@ -128,12 +161,18 @@ LitScene read_lit_scene(const fs::path& gltf, const std::optional<fs::path>& exr
     lit.scene = read_scene(gltf);
     require_uvs(gltf, lit.scene);
     lit.cameras = read_cameras(gltf);
-    const Json json = json_of(gltf);
+    const InputFile file = read_input_file(gltf);
+    const GltfFile loaded = load_gltf(file);
+    const Json& json = loaded.json;
     lit.exr = exr ? *exr : exr_of(gltf, json);
     const std::size_t count = atlas_count_in(json, gltf);
     lit.atlas_of = atlases_of(lit.scene, json, count, gltf);
-    for (std::uint32_t atlas = 0; atlas < count; ++atlas)
-        add_lightmap(lit, atlas_file(lit.exr, atlas));
+    const bool is_ours = json.contains(Json::json_pointer("/asset/extras/hemirad/atlases"));
+    for (std::uint32_t atlas = 0; atlas < count; ++atlas) {
+        const fs::path exr_of_atlas = atlas_file(lit.exr, atlas);
+        add_lightmap(lit, exr_of_atlas);
+        if (is_ours) require_size(loaded, atlas, exr_of_atlas, lit.lightmaps.back());
+    }
     return lit;
 }
 

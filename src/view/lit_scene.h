@@ -23,7 +23,8 @@ struct LitScene {
 };
 
 /// `exr`: instead of the file that the glTF names, which lies in the glTF's folder or below.
-/// Throws InputError, also where atlases were not solved with the same settings.
+/// Throws InputError, also where atlases were not solved with the same settings, or are not of the
+/// size that the glTF's own picture of them has.
 LitScene read_lit_scene(const std::filesystem::path& gltf,
                         const std::optional<std::filesystem::path>& exr);
 

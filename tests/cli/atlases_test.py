@@ -106,6 +106,19 @@ class Atlases(scenes.InFolder):
         self.assertIn('"right": its TEXCOORD_1 claim texels of "left"', result.stderr)
         self.assertEqual(["out.1.exr", "out.exr"], self.written())
 
+    def test_many_instances_are_told_in_one_line_and_reported_in_full(self):
+        result = self.solve_gltf("-o", "out.exr", "--atlas-size", "8", "--report", "r.json",
+                                 uvs=UPRIGHT, nodes=[
+            {"mesh": 0, "name": f"n{i}", "translation": [2 * i, 0, 0]} for i in range(6)])
+
+        self.assertEqual(0, result.returncode, result.stderr)
+        told = [line for line in result.stderr.splitlines() if "claim texels" in line]
+        self.assertEqual(1, len(told), told)
+        self.assertTrue(told[0].startswith("warning: 5 objects: "), told)
+        self.assertTrue(told[0].endswith("; and 2 more, which --report lists"), told)
+        warnings = json.loads((self.folder / "r.json").read_text())["warnings"]
+        self.assertEqual([f'"n{i}"' in warning for i, warning in enumerate(warnings, 1)], [True] * 5)
+
     def test_uvs_that_make_no_lightmap_are_refused_by_the_nodes_name(self):
         for uvs, says in [(((0, 1), (2, 1), (2, 0), (0, 0)), "outside of 0 to 1"),
                           (((0, 1), (1, 1), (1, 0), (1, 1)), "overlap in TEXCOORD_1"),

@@ -418,7 +418,7 @@ class Report(CommandLine):
                 "scene": ("patches", "elements", "bands", "closed"),
                 "device": ("name", "compute_units", "pe", "lanes"),
                 "closure": ("min", "max"),
-                "seconds": ("total", "build_kernels", "solve", "gather", "lightmap",
+                "seconds": ("total", "prepare", "build_kernels", "solve", "gather", "lightmap",
                             "per_shot_median", "per_stage"),
         }.items():
             for member in members:

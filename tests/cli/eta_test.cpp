@@ -17,6 +17,35 @@ TEST(Eta, IsUnknownWithoutDecay) {
     EXPECT_FALSE(eta.remaining());
 }
 
+TEST(Eta, IsUnknownInTheFirstSeconds) {
+    Eta eta(1e-3);
+
+    eta.note(0, 1);
+    eta.note(2.9, 0.5);
+    EXPECT_FALSE(eta.remaining());
+
+    eta.note(3, 0.5);
+    EXPECT_TRUE(eta.remaining());
+}
+
+TEST(Eta, IsUnknownInTheFirstHundredthOfTheWay) {
+    Eta eta(1e-3);
+
+    eta.note(0, 1);
+    eta.note(4, std::pow(1e-3, 0.009));
+    EXPECT_FALSE(eta.remaining());
+
+    eta.note(5, std::pow(1e-3, 0.011));
+    EXPECT_TRUE(eta.remaining());
+}
+
+TEST(Eta, IsToldUpToAThousandHours) {
+    EXPECT_EQ(left_text({}), "");
+    EXPECT_EQ(left_text(200), ", 3 min 20 s left");
+    EXPECT_EQ(left_text(3.6e6), ", 1000 h 0 min left");
+    EXPECT_EQ(left_text(3.7e6), "");
+}
+
 TEST(Eta, IsExactForASteadyDecay) {
     Eta eta(1e-3);
 

@@ -58,7 +58,7 @@ class Memory(LimitsTest):
                          sum(report["estimate"]["memory_parts"].values()))
 
     def test_quiet_says_nothing_of_it(self):
-        _, told = self.report_of("cornell.gltf", "--quality", "draft", "--max-shots", "1",
+        _, told = self.report_of("cornell.gltf", "--quality", "draft", "--patch-size", "0.2",
                                  "--quiet")
         self.assertEqual("", told)
 
@@ -71,15 +71,15 @@ class Memory(LimitsTest):
 
     def test_a_limit_refuses_before_the_work_with_numbers_and_advice(self):
         started = time.monotonic()
-        line = self.refused("--memory-limit", "100M")
-        self.assertRegex(line, r"cornell\.gltf: needs about \d+ MiB, --memory-limit is 100 MiB; "
+        line = self.refused("--memory-limit", "250M")
+        self.assertRegex(line, r"cornell\.gltf: needs about \d+ MiB, --memory-limit is 250 MiB; "
                                r"\d.* for rows of form factors: lower --row-memory")
         self.assertLess(time.monotonic() - started, 10)
 
     def test_the_advice_is_for_the_largest_part(self):
         self.assertIn("raise --texel-size",
                       self.refused("--memory-limit", "0.3G", "--texel-size", "0.0005"))
-        self.assertIn("--patch-size", self.refused("--memory-limit", "100M", "--row-memory", "0"))
+        self.assertIn("--patch-size", self.refused("--memory-limit", "250M", "--row-memory", "0"))
 
     def test_what_fits_the_limit_is_solved(self):
         self.report_of("cornell.gltf", "--quality", "draft", "--max-shots", "1", "--memory-limit",

@@ -16,6 +16,14 @@ TEST(NearNames, TheDistanceCountsLettersWhateverTheirCase) {
     EXPECT_EQ(edit_distance("door", ""), 4u);
 }
 
+TEST(NearNames, WhatMayHaveBeenMeantBeginsSoOrDiffersLittle) {
+    const std::vector<std::string> names{"--patch-size", "--padding", "--pe"};
+    EXPECT_EQ(near_name(names, "--pacth-size"), "--patch-size");
+    EXPECT_EQ(near_name(names, "--pad"), "--padding");
+    EXPECT_EQ(near_name(names, "--colour"), std::nullopt);
+    EXPECT_EQ(near_name({}, "--pad"), std::nullopt);
+}
+
 TEST(NearNames, ANameIsFoundAsItIsWritten) {
     EXPECT_EQ(index_of_name({"floor", "Floor", "door"}, "hall.obj", "--from", "Floor"), 1u);
 }

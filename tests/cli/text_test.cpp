@@ -30,6 +30,12 @@ TEST(Text, NumbersReadBackAsTheSame) {
     EXPECT_EQ(std::stod(number_text(1.0 / 3)), 1.0 / 3);
 }
 
+TEST(Text, PeopleNeedFewerDigits) {
+    EXPECT_EQ(rounded_text(31.41592653589794), "31.41593");
+    EXPECT_EQ(rounded_text(2), "2");
+    EXPECT_EQ(percent_text(0.98712), "98.7 %");
+}
+
 TEST(Text, CountsAgreeWithTheirNouns) {
     EXPECT_EQ(counted(1, "patch", "patches"), "1 patch");
     EXPECT_EQ(counted(2, "patch", "patches"), "2 patches");

@@ -101,7 +101,7 @@ TEST_F(AtomicFile, AFileInPlaceOfTheFolderIsNamed) {
 TEST_F(AtomicFile, ADirectoryIsNotReplaced) {
     fs::create_directory(file("a.txt"));
 
-    EXPECT_EQ(failure_of(file("a.txt")), file("a.txt").string() + ": Is a directory");
+    EXPECT_EQ(failure_of(file("a.txt")), file("a.txt").string() + ": is a folder");
     EXPECT_EQ(names_in_folder(), std::set<std::string>{"a.txt"});
 }
 

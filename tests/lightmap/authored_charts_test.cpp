@@ -209,9 +209,9 @@ TEST(AuthoredCharts, AnObjectThatOverlapsAnotherGoesToTheNextAtlasWithAWarning) 
     EXPECT_EQ(layout.atlases.size(), 2u);
     EXPECT_EQ(layout.authored[0].atlas, 0u);
     EXPECT_EQ(layout.authored[3].atlas, 1u);
-    ASSERT_EQ(layout.warnings.size(), 1u);
+    ASSERT_EQ(layout.moved.size(), 1u);
     EXPECT_EQ(
-        layout.warnings[0],
+        layout.moved[0],
         "hand.obj: \"other\": its TEXCOORD_1 claim texels of \"floor\": it goes to lightmap 1");
 }
 

@@ -185,6 +185,24 @@ class Render(Solved):
         self.assert_refused(self.hemirad("render", "box.glb", "-o", "a.exr", "--false-colour"),
                             "an .exr holds radiance")
 
+    def test_the_size_that_is_told_is_the_picture_s(self):
+        told = self.hemirad("render", "box.glb", "-o", "a.png", "--size", "64x48", "--false-colour")
+        rows = read_png((self.folder / "a.png").read_bytes())
+        self.assertIn(f": 64 x {len(rows)} from front, its scale included\n", told.stderr)
+        self.assertGreater(len(rows), 48)
+
+    def test_a_lightmap_of_another_size_is_refused(self):
+        self.assert_done(self.hemirad("solve", "scene.obj", "-o", "other.exr", "--patch-size", "0.5",
+                                      "--resolution", "32", "--quiet"))
+        self.assert_refused(self.hemirad("render", "box.glb", "--lightmap", "other.exr"),
+                            "other.exr: has ")
+
+    def test_a_view_of_nothing_is_warned_of(self):
+        result = self.hemirad("render", "box.glb", "-o", "a.png", "--quiet", "--size", "9x9",
+                              "--eye", "9,9,9", "--look-at", "20,20,9")
+        self.assert_done(result)
+        self.assertEqual("warning: a.png: the camera sees nothing of the scene\n", result.stderr)
+
     def test_doubtful_views_are_refused_in_one_line(self):
         for arguments, says in {
                 ("--camera", "back"): "it has the cameras front",
@@ -207,7 +225,9 @@ class Render(Solved):
     def test_a_scene_without_cameras_says_what_to_do(self):
         self.assert_done(self.hemirad("solve", "scene.obj", "-o", "s.glb", "--quality", "draft",
                                       "--quiet"))
-        self.assert_refused(self.hemirad("render", "s.glb"), "--eye X,Y,Z needs none")
+        self.assert_refused(self.hemirad("render", "s.glb"), "has no cameras; --eye X,Y,Z needs none")
+        self.assert_refused(self.hemirad("render", "s.glb", "--camera", "foo"),
+                            "s.glb: has no cameras; --eye X,Y,Z needs none")
 
 
 class Room(Solved):
@@ -251,6 +271,14 @@ class SeveralAtlases(Room):
             far = max(abs(a - b) for x, y in zip(*pictures) for p, q in zip(x, y)
                       for a, b in zip(p, q))
             self.assertLessEqual(far, 1)
+
+    def test_a_view_without_light_is_warned_of(self):
+        down = ("--eye", "0.5,0.5,0.5", "--look-at", "0.5,0,0.5", "--up", "1,0,0", "--size", "9x9")
+        for layer, says in ((("--layer", "emission"),
+                             "warning: a.png: nothing that the camera sees is lit\n"), ((), "")):
+            result = self.hemirad("render", "one.glb", "-o", "a.png", "--quiet", *down, *layer)
+            self.assert_done(result)
+            self.assertEqual(says, result.stderr)
 
     def test_a_page_holds_all_of_them_in_every_layer_and_snapshot(self):
         lit = self.lit_scene(self.page())
