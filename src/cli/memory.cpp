@@ -1,8 +1,10 @@
 #include "cli/memory.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <fstream>
 #include <limits>
 #include <utility>
@@ -10,8 +12,11 @@
 #include "cli/gather_lightmaps.h"
 #include "cli/text.h"
 #include "errors.h"
+#include "lightmap/footprint.h"
+#include "scene/surface_point.h"
 #include "solver/bands.h"
 #include "solver/gather.h"
+#include "solver/near_pairs.h"
 #include "solver/patch_arrays.h"
 
 namespace hemirad {
@@ -29,8 +34,12 @@ constexpr std::uint64_t kMeshBytes = 190;
 constexpr std::uint64_t kUploadBytes = 85;
 // Buffers of 8 MiB and more are of huge pages, of which a touch takes all.
 constexpr std::uint64_t kHugePage = 2 * kMiB;
-// Beside the channels of a texel: its footprint, 32 bytes, chart by chart.
-constexpr std::uint64_t kFootprintBytes = 8;
+// A texel of the part of an atlas that is drawn.
+constexpr std::uint64_t kFootprintBytes = sizeof(Footprint);
+// What charts are gathered together, src/lightmap/gather_light.cpp.
+constexpr std::uint64_t kTexelsTogether = 1u << 22;
+// Beside the channels, chart by chart or in the encoder.
+constexpr std::uint64_t kLeastMore = 8;
 // A texel of a preview, besides the light it is made of.
 constexpr std::uint64_t kPreviewBytes = 6;
 
@@ -50,6 +59,24 @@ std::uint64_t texels_of_largest(const ChartLayout& layout) {
     std::uint64_t most = 0;
     for (const Atlas& atlas : layout.atlases) most = std::max(most, texels_of(atlas));
     return most;
+}
+
+/// Of the largest part of an atlas that is drawn at once: a chart, or all of an atlas that holds
+/// the scene's own.
+std::uint64_t texels_of_largest_part(const ChartLayout& layout) {
+    std::uint64_t most = 0;
+    for (const Chart& chart : layout.charts)
+        most = std::max(most, std::uint64_t{chart.width + 2 * layout.padding} *
+                                  (chart.height + 2 * layout.padding));
+    for (const AuthoredTriangle& triangle : layout.authored)
+        most = std::max(most, texels_of(layout.atlases[triangle.atlas]));
+    return most;
+}
+
+/// With the queue by which what is hidden is filled, which doubles as it grows.
+std::uint64_t footprint_bytes(const ChartLayout& layout) {
+    const std::uint64_t texels = texels_of_largest_part(layout);
+    return kFootprintBytes * texels + sizeof(std::size_t) * std::bit_ceil(texels);
 }
 
 std::uint64_t channel_count(const Mesh& mesh, const SolveOptions& options) {
@@ -88,9 +115,13 @@ MemoryParts on_device(const Mesh& mesh, const SolveOptions& options,
             {"rows of form factors", touched, "lower --row-memory"}};
 }
 
-std::uint64_t near_pair_bytes(const Mesh& mesh, const SolverSettings& solver) {
-    return solver.form_factor == FormFactorMode::analytic ? 8 * mesh.patches.size() : 0;
+std::uint64_t near_finds(const Mesh& mesh, const SolverSettings& solver) {
+    return solver.form_factor == FormFactorMode::analytic
+               ? estimated_near_finds(mesh, solver.sampling_error)
+               : 0;
 }
+
+constexpr const char* kNearPairsAdvice = "raise --sampling-error or --patch-size";
 
 MemoryParts at_all_times(const Mesh& mesh) {
     return {{"program and OpenCL", kProgram},
@@ -109,14 +140,21 @@ MemoryParts joined(MemoryParts parts, const MemoryParts& more) {
     return parts;
 }
 
+MemoryParts while_pairing(const Mesh& mesh, std::uint64_t finds) {
+    return joined(at_all_times(mesh),
+                  {{"pairs of near patches", near_pairs_bytes(mesh, finds), kNearPairsAdvice}});
+}
+
 MemoryParts while_solving(const Mesh& mesh, const SolveOptions& options,
-                          const mp1map::DeviceSummary& device) {
+                          const mp1map::DeviceSummary& device, std::uint64_t finds) {
     const MemoryPart solution = solutions(mesh, options);
     const std::uint64_t upload = kUploadBytes * mesh.patches.size();
+    // A patch and a factor, on the host and, where that is the same memory, on the device.
+    const std::uint64_t near = 8 * finds * (device.is_cpu ? 2 : 1);
     MemoryParts parts = at_all_times(mesh);
-    parts.push_back({"arrays for the device, solution",
-                     std::max(upload, solution.bytes) + near_pair_bytes(mesh, options.solver),
+    parts.push_back({"arrays for the device, solution", std::max(upload, solution.bytes),
                      "raise --patch-size"});
+    parts.push_back({"pairs of near patches", near, kNearPairsAdvice});
     return device.is_cpu ? joined(parts, on_device(mesh, options, device)) : parts;
 }
 
@@ -126,12 +164,28 @@ MemoryPart gathered_light(const Mesh& mesh, const ChartLayout& layout,
     return {"gathered light", bytes * texels_of_all(layout), "raise --texel-size"};
 }
 
+/// The lightmap of the patches as a guide, footprints and values of the charts gathered together,
+/// and, where all texels are gathered, points and what is found there.
+MemoryPart texels_to_gather(const Mesh& mesh, const ChartLayout& layout,
+                            const SolveOptions& options) {
+    const std::uint64_t bands = gathered_bands(options, mesh);
+    const std::uint64_t together =
+        std::min(texels_of_largest(layout), kTexelsTogether + texels_of_largest_part(layout));
+    const std::uint64_t texel = kFootprintBytes + 4 * bands + 5;  // state and patch beyond
+    const std::uint64_t point =
+        options.gather_error > 0 ? 0 : sizeof(SurfacePoint) * 2 + 4 + 8 * bands;
+    return {"texels to gather",
+            4 * (bands + 1) * texels_of_largest(layout) + (texel + point) * together,
+            "raise --texel-size or --gather-error"};
+}
+
 MemoryParts while_gathering(const Mesh& mesh, const ChartLayout& layout,
                             const SolveOptions& options, const mp1map::DeviceSummary& device) {
     MemoryParts parts = at_all_times(mesh);
     parts.push_back(solutions(mesh, options));
     if (!options.gather) return parts;
     parts.push_back(gathered_light(mesh, layout, options));
+    parts.push_back(texels_to_gather(mesh, layout, options));
     if (device.is_cpu)
         parts.push_back(
             {"gather on the device",
@@ -140,20 +194,42 @@ MemoryParts while_gathering(const Mesh& mesh, const ChartLayout& layout,
     return parts;
 }
 
-MemoryParts while_writing(const Mesh& mesh, const ChartLayout& layout,
-                          const SolveOptions& options) {
-    const std::uint64_t channels = channel_count(mesh, options);
+MemoryPart lightmap(const Mesh& mesh, const ChartLayout& layout, const SolveOptions& options) {
+    const std::uint64_t channels = channel_count(mesh, options), texels = texels_of_largest(layout);
     // Of what comes on top there is one after another.
     const std::uint64_t more =
-        std::max({kFootprintBytes, options.pixels == PixelType::half ? 2 * channels : 0,
-                  options.preview ? kFootprintBytes + kPreviewBytes : 0});
-    const std::uint64_t texel = 4 * channels + more;
+        std::max({kLeastMore, options.pixels == PixelType::half ? 2 * channels : 0,
+                  options.preview ? kLeastMore + kPreviewBytes : 0});
+    return {"lightmap", 4 * channels * texels + std::max(more * texels, footprint_bytes(layout)),
+            "raise --texel-size, lower --atlas-size or ask for fewer --layers"};
+}
+
+MemoryParts while_writing(const Mesh& mesh, const ChartLayout& layout,
+                          const SolveOptions& options) {
     MemoryParts parts = at_all_times(mesh);
     parts.push_back(solutions(mesh, options));
-    parts.push_back({"lightmap", texel * texels_of_largest(layout),
-                     "raise --texel-size, lower --atlas-size or ask for fewer --layers"});
+    parts.push_back(lightmap(mesh, layout, options));
     if (options.gather) parts.push_back(gathered_light(mesh, layout, options));
     return parts;
+}
+
+/// Interim pictures are made beside the solver.
+MemoryParts while_solving_and_writing(const Mesh& mesh, const ChartLayout& layout,
+                                      const SolveOptions& options,
+                                      const mp1map::DeviceSummary& device, std::uint64_t finds) {
+    MemoryParts parts = while_solving(mesh, options, device, finds);
+    if (options.snapshots.shots > 0 || options.snapshots.seconds > 0)
+        parts.push_back(lightmap(mesh, layout, options));
+    return parts;
+}
+
+/// What reading and meshing have taken.
+MemoryParts so_far() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return {{"reading the scene and making its mesh",
+             static_cast<std::uint64_t>(usage.ru_maxrss) * 1024,
+             "raise --patch-size, or make the scene or its textures smaller"}};
 }
 
 /// The number behind `name` in a file of the kernel's, or at its beginning; `otherwise` where there
@@ -210,9 +286,11 @@ MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
             estimate.device_bytes,
             gather_bytes(mesh, gathered_bands(options, mesh), gather_settings(options), device));
     estimate.compiler_bytes = kCompiler + (options.gather ? kGatherCompiler : 0);
+    const std::uint64_t finds = near_finds(mesh, options.solver);
     for (auto& parts :
-         {while_solving(mesh, options, device), while_gathering(mesh, layout, options, device),
-          while_writing(mesh, layout, options)})
+         {so_far(), while_pairing(mesh, finds),
+          while_solving_and_writing(mesh, layout, options, device, finds),
+          while_gathering(mesh, layout, options, device), while_writing(mesh, layout, options)})
         if (total(parts) > estimate.bytes()) estimate.parts = parts;
     return estimate;
 }

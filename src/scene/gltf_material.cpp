@@ -24,8 +24,8 @@ constexpr std::size_t kMostBands = 1000;
 
 struct Materials {
     const GltfFile& gltf;
-    /// By where their bytes are: the same bufferView in many images is decoded once.
-    std::map<std::pair<int, std::size_t>, Rgb> image_averages = {};
+    /// By where their bytes are: the same bytes in many images or bufferViews are decoded once.
+    std::map<std::array<std::size_t, 3>, Rgb> image_averages = {};
 };
 
 // IEC 61966-2-1
@@ -90,8 +90,13 @@ tinygltf::Image decoded(const GltfFile& gltf, std::size_t index) {
 }
 
 Rgb image_average(Materials& materials, std::size_t index) {
-    const int view = materials.gltf.model.images[index].bufferView;
-    const std::pair key{view, view >= 0 ? 0 : index};
+    const auto& model = materials.gltf.model;
+    const int view = model.images[index].bufferView;
+    std::array<std::size_t, 3> key{index, 0, 0};  // no view is of 0 bytes
+    if (view >= 0) {
+        const auto& of = model.bufferViews[static_cast<std::size_t>(view)];
+        key = {static_cast<std::size_t>(of.buffer), of.byteOffset, of.byteLength};
+    }
     const auto known = materials.image_averages.find(key);
     if (known != materials.image_averages.end()) return known->second;
     const auto pixels = decoded(materials.gltf, index);

@@ -272,9 +272,15 @@ struct PlacedPrimitive {
 /// Elements that an accessor announces and may hold: what it lacks is told when it is read.
 std::size_t element_count(const tinygltf::Model& model, int index) {
     const auto& accessor = model.accessors[static_cast<std::size_t>(index)];
-    if (accessor.bufferView < 0) return accessor.count;
-    const auto& view = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
-    return std::min(accessor.count, view.byteLength);
+    const auto held = [&](int view, std::size_t count) {
+        if (view < 0) return count;
+        return std::min(count, model.bufferViews[static_cast<std::size_t>(view)].byteLength);
+    };
+    const auto& sparse = accessor.sparse;
+    return held(accessor.bufferView, accessor.count) +
+           (sparse.isSparse
+                ? held(sparse.indices.bufferView, static_cast<std::size_t>(sparse.count))
+                : 0);
 }
 
 /// Of the mesh.

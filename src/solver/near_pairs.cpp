@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
@@ -135,14 +136,24 @@ class Cells {
 
 using Pair = std::pair<std::size_t, std::size_t>;  // shooter and receiver
 
-// Either way round if one is near: the lower patch first.
+constexpr std::size_t kMostPairs = std::numeric_limits<std::int32_t>::max() / 2;
+
+void require_indexable(std::size_t pairs) {
+    if (pairs > kMostPairs)
+        throw InputError("more than " + std::to_string(kMostPairs) +
+                         " pairs of patches are near; raise --sampling-error");
+}
+
+// Either way round if one is near: the lower patch first. Both ways are found at most.
 std::vector<Pair> pairs_of(std::span<const PatchShape> patches, double error) {
     const Cells cells(patches, error);
     std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < patches.size(); ++i)
+    for (std::size_t i = 0; i < patches.size(); ++i) {
         cells.visit_near(patches[i], [&](std::size_t j, double) {
             if (j != i) pairs.push_back(std::minmax(i, j));
         });
+        require_indexable(pairs.size() / 2);
+    }
     std::ranges::sort(pairs);
     const auto repeated = std::ranges::unique(pairs);
     pairs.erase(repeated.begin(), repeated.end());
@@ -157,10 +168,12 @@ std::vector<Pair> pairs_of(const Mesh& mesh, std::span<const PatchShape> shooter
                            std::span<const PatchShape> patches, double error) {
     const Cells cells(patches, error);
     std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < shooters.size(); ++i)
+    for (std::size_t i = 0; i < shooters.size(); ++i) {
         cells.visit_near(shooters[i], [&](std::size_t j, double) {
             if (!is_own(mesh.shooters[i], j)) pairs.emplace_back(i, j);
         });
+        require_indexable(pairs.size());
+    }
     std::ranges::sort(pairs);
     return pairs;
 }
@@ -191,12 +204,6 @@ std::vector<double> exchange_areas(std::span<const PatchShape> shooters,
         });
     threads.clear();  // waits
     return result;
-}
-
-void require_indexable(std::size_t pairs) {
-    if (pairs > std::numeric_limits<std::int32_t>::max() / 2)
-        throw InputError(std::to_string(pairs) +
-                         " pairs of patches are near; raise --sampling-error");
 }
 
 NearPairs both_ways(std::span<const PatchShape> patches, double error) {
@@ -247,6 +254,25 @@ NearPairs from_shooters(const Mesh& mesh, std::span<const PatchShape> patches, d
 NearPairs near_pairs(const Mesh& mesh, double error) {
     const auto patches = patch_shapes(mesh);
     return mesh.shooters.empty() ? both_ways(patches, error) : from_shooters(mesh, patches, error);
+}
+
+std::uint64_t estimated_near_finds(const Mesh& mesh, double error) {
+    constexpr std::size_t kLooks = 1000;
+    const auto patches = patch_shapes(mesh);
+    const auto shooters = mesh.shooters.empty() ? patches : shooter_shapes(mesh);
+    const Cells cells(patches, error);
+    std::uint64_t found = 0, looks = 0;
+    const std::size_t step = shooters.size() / kLooks + 1;
+    for (std::size_t i = 0; i < shooters.size(); i += step, ++looks)
+        cells.visit_near(shooters[i], [&](std::size_t, double) { ++found; });
+    return looks == 0 ? 0 : found * shooters.size() / looks;
+}
+
+std::uint64_t near_pairs_bytes(const Mesh& mesh, std::uint64_t finds) {
+    const std::uint64_t pairs = mesh.shooters.empty() ? finds / 2 : finds;
+    const std::uint64_t factors = mesh.shooters.empty() ? finds : 2 * std::bit_ceil(finds);
+    const std::uint64_t growing = sizeof(Pair) * std::bit_ceil(finds);
+    return std::max(growing, sizeof(Pair) * finds + sizeof(double) * pairs + 8 * factors);
 }
 
 std::vector<std::int32_t> shooter_samples_for(const Mesh& mesh, double error, std::int32_t most) {

@@ -22,6 +22,12 @@ struct NearPairs {
 /// from receiver to shooter: that is what a receiver's irradiance goes by.
 NearPairs near_pairs(const Mesh& mesh, double error);
 
+/// How often a shooter finds a patch near, from one in so many shooters that a thousand look.
+std::uint64_t estimated_near_finds(const Mesh& mesh, double error);
+
+/// What near_pairs() takes while it makes them, for so many finds.
+std::uint64_t near_pairs_bytes(const Mesh& mesh, std::uint64_t finds);
+
 /// M of the M x M hemispheres that each shooter needs to keep that error below `error`, 1 to
 /// `most`.
 std::vector<std::int32_t> shooter_samples_for(const Mesh& mesh, double error, std::int32_t most);

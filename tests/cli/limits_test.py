@@ -47,6 +47,10 @@ class Memory(LimitsTest):
         self.assert_estimated("lroom.obj", "--quality", "draft", "--max-shots", "3", "--texel-size",
                               "0.01", "--layers", "normal,position")
 
+    def test_pairs_of_near_patches_are_estimated_too(self):
+        self.assert_estimated("cornell.gltf", "--quality", "draft", "--max-shots", "3",
+                              "--sampling-error", "1e-9")
+
     def test_info_and_report_tell_the_same(self):
         options = ("--quality", "draft", "--row-memory", "1", "--layers", "shots")
         report, told = self.report_of("cornell.gltf", *options, "--max-shots", "3")
