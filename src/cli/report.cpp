@@ -108,7 +108,7 @@ Json seconds_json(const Outcome& outcome) {
     return {{"total", seconds.total},
             {"build_kernels", seconds.build_kernels},
             {"solve", seconds.solve},
-            {"gather", outcome.gathered ? outcome.gathered->seconds : 0},
+            {"gather", seconds.gather},
             {"lightmap", seconds.lightmap},
             {"per_shot_median", seconds.per_shot_median},
             {"per_stage", stages}};
