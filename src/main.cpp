@@ -8,6 +8,7 @@
 
 #include "cli/command_line.h"
 #include "cli/exit_codes.h"
+#include "cli/interrupts.h"
 #include "errors.h"
 #include "mp1map/device.h"
 #include "scene/printable.h"
@@ -39,21 +40,13 @@ int complain_of_the_unexpected(const std::exception& fault) {
     return complain("hemirad: " + std::string(fault.what()), hemirad::kWrongUse);
 }
 
-bool is_ignored(int signal) {
-    struct sigaction action = {};
-    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
-/// A limit of files' sizes is to be an error of the write, as a full disk is; and what was ignored
-/// when we started (nohup, a shell's background job) is to stay so. Blocked, not ignored: a
-/// device's compiler (LLVM) handles these signals, whether they were ignored or not, and takes all
-/// handlers away, ours of SIGINT too.
-void block_signals() {
+/// A limit of files' sizes, or a reader who has gone, is to be an error of the write, as a full disk
+/// is. Blocked, not ignored: a device's compiler (LLVM) takes all handlers away.
+void block_signals_of_writes() {
     sigset_t signals;
     sigemptyset(&signals);
     sigaddset(&signals, SIGXFSZ);
-    for (const int signal : {SIGHUP, SIGINT, SIGTERM})
-        if (is_ignored(signal)) sigaddset(&signals, signal);
+    sigaddset(&signals, SIGPIPE);
     sigprocmask(SIG_BLOCK, &signals, nullptr);
 }
 
@@ -70,6 +63,7 @@ int run_and_complain(int argc, const char* const* argv) {
     using namespace hemirad;
     using namespace std::string_literals;
     try {
+        take_signals();
         return run(argc, argv);
     } catch (const CLI::ParseError& fault) {
         return complain("hemirad: "s + fault.what(), kWrongUse);
@@ -91,7 +85,7 @@ int run_and_complain(int argc, const char* const* argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    block_signals();
+    block_signals_of_writes();
     try {
         return run_and_complain(argc, argv);
     } catch (const std::bad_alloc&) {  // of the message itself

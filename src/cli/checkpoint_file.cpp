@@ -117,17 +117,24 @@ std::vector<Number> take(std::string_view& bytes, std::uint64_t count) {
     return numbers;
 }
 
+/// Elsewhere the library would convert what is no such number.
+std::uint64_t count_at(const Json& json, const char* name) {
+    const Json& count = json.at(name);
+    if (!count.is_number_unsigned()) throw InputError(std::string(name) + " is not a count");
+    return count;
+}
+
 SolveState state_from(const Json& json, std::string_view numbers) {
     SolveState state;
-    state.shots = json.at("shots");
-    state.repeated_shots = json.at("repeated_shots");
+    state.shots = count_at(json, "shots");
+    state.repeated_shots = count_at(json, "repeated_shots");
     state.least_surplus = json.at("least_surplus");
     state.most_surplus = json.at("most_surplus");
-    state.unshot = take<float>(numbers, json.at("unshot"));
-    state.received = take<float>(numbers, json.at("received"));
-    state.received_rest = take<float>(numbers, json.at("received"));
-    state.escaped = take<float>(numbers, json.at("escaped"));
-    state.shots_of = take<std::uint32_t>(numbers, json.at("shots_of"));
+    state.unshot = take<float>(numbers, count_at(json, "unshot"));
+    state.received = take<float>(numbers, count_at(json, "received"));
+    state.received_rest = take<float>(numbers, count_at(json, "received"));
+    state.escaped = take<float>(numbers, count_at(json, "escaped"));
+    state.shots_of = take<std::uint32_t>(numbers, count_at(json, "shots_of"));
     if (!numbers.empty()) throw InputError("more numbers than it tells of");
     return state;
 }

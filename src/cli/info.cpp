@@ -162,6 +162,17 @@ void print_time(std::ostream& out, const std::string& what, const Mesh& mesh,
     }
 }
 
+/// Printed as the memory's line: what else there is to tell of the scene is told.
+std::optional<ChartLayout> layout_or_fault(std::ostream& out, const Scene& scene, const Mesh& mesh,
+                                           const SolveOptions& options) {
+    try {
+        return lay_out_charts(scene, mesh, options.charts);
+    } catch (const InputError& fault) {
+        out << "memory       none, no lightmap: " << printable(fault.what()) << '\n';
+        return {};
+    }
+}
+
 void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
                 const SolveOptions& options) {
     if (mp1map::list_devices().empty()) {
@@ -169,9 +180,10 @@ void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
         return;
     }
     const auto device = mp1map::Device::open(options.device, options.compute_units);
-    const auto layout = lay_out_charts(scene, mesh, options.charts);
+    const auto layout = layout_or_fault(out, scene, mesh, options);
+    if (!layout) return;
     const auto limit = options.memory_limit.value_or(available_memory());
-    const auto memory = estimate_memory(mesh, layout, options, device.summary());
+    const auto memory = estimate_memory(mesh, *layout, options, device.summary());
     out << "device       " << printable(device.summary().name) << ", "
         << bytes_text(device.summary().global_memory) << '\n'
         << "memory       " << memory_text(memory) << (options.memory_limit ? "; limit " : "; free ")

@@ -2,46 +2,74 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cassert>
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 #include "cli/exit_codes.h"
 
 namespace hemirad {
 namespace {
 
-constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+enum class State { unwatched, watched, requested };
 
-// A signal handler reaches nothing but globals.
-volatile std::sig_atomic_t g_requested = 0;
-bool g_in_use = false;
+// The thread of signals outlives main's objects.
+std::atomic<State> g_state = State::unwatched;
 
-extern "C" void note_interrupt(int) {
-    if (g_requested != 0) _exit(kInterrupted);
-    g_requested = 1;
+bool is_ignored(int signal) {
+    struct sigaction action = {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+void end_by(int signal) {
+    std::signal(signal, SIG_DFL);  // a device's compiler (LLVM) has handlers of its own
+    sigset_t only;
+    sigemptyset(&only);
+    sigaddset(&only, signal);
+    pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+    std::raise(signal);
+}
+
+/// Does not return.
+void act_on(sigset_t signals) {
+    using Clock = std::chrono::steady_clock;
+    constexpr auto kTheSame = std::chrono::seconds(1);
+    Clock::time_point first;
+    for (int signal = 0;;) {
+        if (sigwait(&signals, &signal) != 0) continue;
+        auto state = State::watched;
+        if (g_state.compare_exchange_strong(state, State::requested))
+            first = Clock::now();
+        else if (state == State::unwatched)
+            end_by(signal);
+        else if (signal != SIGHUP && Clock::now() - first > kTheSame)
+            _exit(kInterrupted);
+    }
 }
 
 }  // namespace
 
-Interrupts::Interrupts() {
-    assert(!g_in_use);
-    g_in_use = true;
-    g_requested = 0;
-    struct sigaction action = {};
-    action.sa_handler = note_interrupt;
-    action.sa_flags = SA_RESTART;
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        sigaction(kSignals[i], nullptr, &previous_[i]);
-        if (previous_[i].sa_handler == SIG_IGN) continue;
-        sigaction(kSignals[i], &action, nullptr);
+void take_signals() {
+    sigset_t taken, blocked;
+    sigemptyset(&taken);
+    sigemptyset(&blocked);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        sigaddset(&blocked, signal);
+        if (!is_ignored(signal)) sigaddset(&taken, signal);
     }
+    pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
+    std::thread(act_on, taken).detach();
 }
 
-Interrupts::~Interrupts() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i)
-        sigaction(kSignals[i], &previous_[i], nullptr);
-    g_in_use = false;
+Interrupts::Interrupts() {
+    [[maybe_unused]] const auto before = g_state.exchange(State::watched);
+    assert(before == State::unwatched);
 }
 
-bool Interrupts::requested() const { return g_requested != 0; }
+Interrupts::~Interrupts() { g_state = State::unwatched; }
+
+bool Interrupts::requested() const { return g_state == State::requested; }
 
 }  // namespace hemirad

@@ -21,7 +21,8 @@ namespace hemirad {
 /// What a solve came to, for the summary and the report.
 struct Outcome {
     struct Seconds {
-        double total = 0, build_kernels = 0, solve = 0, lightmap = 0, per_shot_median = 0;
+        double total = 0, build_kernels = 0, solve = 0, gather = 0, lightmap = 0;
+        double per_shot_median = 0;
         double prepare = 0;  ///< scene, mesh and charts, before there is a device
         std::map<std::string, std::pair<double, std::uint64_t>> per_kernel;  ///< and launches
     };

@@ -34,6 +34,13 @@ std::vector<fs::path> all_files(const SolveOptions& options) {
     return files;
 }
 
+void keep_resumed(const SolveOptions& options, const std::vector<fs::path>& files) {
+    for (const auto& file : files)
+        if (place_of(file) == place_of(*options.resume) && file != options.checkpoint)
+            throw InputError("hemirad: " + printable(file.string()) +
+                             ": would overwrite the checkpoint of --resume");
+}
+
 /// Emission may be up to what a double holds, a lightmap only what a float does.
 void check_finite(const fs::path& file, const Lightmap& lightmap) {
     const auto check = [&](const std::vector<std::vector<float>>& bands) {
@@ -128,6 +135,7 @@ void check_outputs(const SolveOptions& options) {
     if (options.report) check_ending("--report", *options.report, {".json"});
     const auto files = all_files(options);
     check_distinct(options.scene, files);
+    if (options.resume) keep_resumed(options, files);
     if (options.checkpoint) require_no_other_file(*options.checkpoint);
     for (const auto& file : files) check_writable(file);
 }

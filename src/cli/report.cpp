@@ -109,7 +109,7 @@ Json seconds_json(const Outcome& outcome) {
             {"prepare", seconds.prepare},
             {"build_kernels", seconds.build_kernels},
             {"solve", seconds.solve},
-            {"gather", outcome.gathered ? outcome.gathered->seconds : 0},
+            {"gather", seconds.gather},
             {"lightmap", seconds.lightmap},
             {"per_shot_median", seconds.per_shot_median},
             {"per_stage", stages}};

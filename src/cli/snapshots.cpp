@@ -1,13 +1,14 @@
 #include "cli/snapshots.h"
 
+#include <cmath>
+
 namespace hemirad {
 
 bool Snapshots::due(const Progress& progress) {
-    std::uint64_t passed = 0;
-    if (interval_.shots != 0) passed = progress.shots / interval_.shots;
-    if (interval_.seconds > 0)
-        passed = static_cast<std::uint64_t>(progress.seconds / interval_.seconds);
-    if (passed <= periods_) return false;
+    double passed = 0;
+    if (interval_.shots != 0) passed = static_cast<double>(progress.shots / interval_.shots);
+    if (interval_.seconds > 0) passed = std::floor(progress.seconds / interval_.seconds);
+    if (passed <= periods_ && std::isfinite(passed)) return false;
     periods_ = passed;
     return true;
 }

@@ -283,8 +283,7 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
 
 /// Solutions of the dial's coarsest step tell where elements and patches are to be split. False
 /// where one did not come to its end.
-bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1map::Device& device,
-                              const Interrupts& interrupts) {
+bool split_where_light_varies(Work& work, const Solving& solving, const SolveOptions& options) {
     constexpr double kBound = 0.02, kShooterBound = 0.01, kTolerance = 1e-2;
     SolveOptions pilot = without_interim_files(options);
     pilot.quiet = true;
@@ -296,7 +295,7 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
     pilot.solver.tolerance = std::max(pilot.solver.tolerance, kTolerance);
     set_accuracy(pilot.solver, accuracy_at(0));
     for (std::uint32_t level = 0; level < options.mesh.split_levels; ++level) {
-        const auto outcome = solve_once(work, pilot, device, interrupts);
+        const auto outcome = solve_with(solving, pilot, pilot.solver);
         if (outcome.stop != Stop::converged) return false;
         const Splits splits{
             find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound),
@@ -306,7 +305,7 @@ bool split_where_light_varies(Work& work, const SolveOptions& options, const mp1
             finer.shooter_count() == work.mesh.shooter_count())
             return true;
         work.mesh = std::move(finer);
-        check_memory(work, options, device.summary());
+        check_memory(work, options, solving.device.summary());
     }
     return true;
 }
@@ -349,12 +348,23 @@ void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
-void warn_of_missing_gather(const SolveOptions& options, Outcome& outcome) {
-    if (!options.gather || outcome.gathered) return;
-    outcome.warnings.push_back("--gather: stopped by --time-limit " +
-                               number_text(options.solver.time_limit) +
+/// What follows tells of the picture as it is.
+void give_up_gather(SolveOptions& options, const Interrupts& interrupts, Outcome& outcome) {
+    options.gather.reset();
+    outcome.warnings.push_back("--gather: stopped by " +
+                               (interrupts.requested()
+                                    ? std::string("a signal")
+                                    : "--time-limit " + number_text(options.solver.time_limit)) +
                                "; the lightmap is that of the patches");
     print_warnings(std::cerr, {outcome.warnings.back()});
+}
+
+void gather(const Solving& solving, SolveOptions& options, Outcome& outcome) {
+    if (!options.gather) return;
+    const Stopwatch gathering;
+    outcome.gathered = gathered_or_saved(solving, options, outcome);
+    outcome.seconds.gather = gathering.seconds();
+    if (!outcome.gathered) give_up_gather(options, solving.interrupts, outcome);
 }
 
 void warn_of_faint_light(const SolveOptions& options, Outcome& outcome) {
@@ -404,11 +414,11 @@ int solve(SolveOptions options) {
     check_memory(work, options, device.summary());
 
     const Interrupts interrupts;
-    if (!split_where_light_varies(work, options, device, interrupts)) {
+    const Solving solving{work, device, interrupts};
+    if (!split_where_light_varies(work, solving, options)) {
         if (options.resume) return stopped_before_resuming(options, interrupts);
         give_up_checkpoint(options);
     }
-    const Solving solving{work, device, interrupts};
     auto outcome = options.target_error ? solve_to_target(solving, options)
                                         : solve_and_estimate(solving, options);
     options.solver.resolution = outcome.accuracy.resolution;
@@ -422,8 +432,7 @@ int solve(SolveOptions options) {
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
     warn_of_missing_light(options, outcome);
-    if (options.gather) outcome.gathered = gathered_or_saved(solving, options, outcome);
-    if (!interrupts.requested()) warn_of_missing_gather(options, outcome);
+    gather(solving, options, outcome);
     const Stopwatch writing;
     write_results(work, options, outcome);
     outcome.outputs = output_files(options);

@@ -163,11 +163,14 @@ void fill(const fs::path& file, const fs::path& path,
     if (!stream) fail(path, errno);
 }
 
-/// The file itself where `path` is a symbolic link: a rename would replace the link.
-fs::path resolved(const fs::path& path) {
-    std::error_code ignored;
-    const fs::path target = fs::canonical(path, ignored);
-    return ignored ? path : target;
+/// The file itself, be it there or not, where `path` is a symbolic link: a rename would replace the
+/// link.
+fs::path resolved(fs::path path) {
+    constexpr int kMostLinks = 40;  // Linux's path_resolution(7)
+    std::error_code fault;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(path, fault); ++i)
+        path = path.parent_path() / fs::read_symlink(path, fault);
+    return path;
 }
 
 bool is_device_or_pipe(const fs::path& path) {

@@ -7,8 +7,10 @@ namespace hemirad {
 namespace {
 
 /// A spreadsheet computes what begins like this, and some of it runs programs. A sign alone does no
-/// harm: "+x" and "-x" are common names of walls.
+/// harm: "+x" and "-x" are common names of walls. A back is named as its front is.
 bool is_formula(std::string_view text) {
+    constexpr std::string_view kBack = " (back)";
+    if (text.ends_with(kBack)) text.remove_suffix(kBack.size());
     if (text.empty()) return false;
     if (text[0] == '=' || text[0] == '@') return true;
     return (text[0] == '+' || text[0] == '-') && text.find_first_of("(|!") != text.npos;

@@ -29,11 +29,13 @@ bool second_byte_fits(unsigned char lead, unsigned char second) {
     return lead != 0xf4 || second < 0x90;
 }
 
-/// U+2028 to U+202E and U+2066 to U+2069: separate lines, or show what follows in another order.
+/// U+2028 to U+202E and U+2066 to U+2069: separate lines, or show what follows in another order, as
+/// the marks U+061C, U+200E and U+200F do.
 bool steers_lines(std::string_view character) {
+    if (character == "\xd8\x9c") return true;
     if (character.size() != 3 || byte_at(character, 0) != 0xe2) return false;
     const auto second = byte_at(character, 1), third = byte_at(character, 2);
-    if (second == 0x80) return third >= 0xa8 && third <= 0xae;
+    if (second == 0x80) return (third >= 0xa8 && third <= 0xae) || third == 0x8e || third == 0x8f;
     return second == 0x81 && third >= 0xa6 && third <= 0xa9;
 }
 

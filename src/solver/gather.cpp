@@ -14,7 +14,7 @@ namespace {
 
 // Points between two looks at the device take about this long.
 constexpr double kSecondsBetweenLooks = 0.2;
-constexpr std::size_t kLeastBatch = 64, kMostBatch = 1u << 14;
+constexpr std::size_t kMostBatch = 1u << 14;
 
 double largest(const std::vector<double>& values) {
     return values.empty() ? 0 : *std::ranges::max_element(values);
@@ -78,7 +78,7 @@ Gather::Gather(const Mesh& mesh, const std::vector<std::vector<double>>& radiosi
       arrays_(patch_arrays(mesh, settings.form_factor == FormFactorMode::analytic)),
       salvo_(points_at_once(mesh, settings)),
       pipeline_(arrays_, even_light(arrays_), pipeline_settings(settings, salvo_), device),
-      batch_(kLeastBatch) {
+      batch_(salvo_) {
     std::vector<float> on_device(radiosity.size() * arrays_.stride);
     for (std::size_t band = 0; band < radiosity.size(); ++band) {
         unit_.push_back(unit_of(radiosity[band]));
@@ -139,7 +139,7 @@ std::optional<std::vector<std::vector<double>>> Gather::irradiance(
         const auto next =
             static_cast<std::size_t>(static_cast<double>(count) * kSecondsBetweenLooks / seconds);
         if (count == batch_)
-            batch_ = std::clamp(next, kLeastBatch, std::min(2 * batch_, kMostBatch));
+            batch_ = std::clamp(next, std::size_t{salvo_}, std::min(2 * batch_, kMostBatch));
     }
     return result;
 }

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """`hemirad solve`: stopped, killed, on a full disk, and going on. HEMIRAD names the binary."""
 import json
+import os
+import pathlib
+import re
 import resource
 import signal
 import subprocess
@@ -204,15 +207,56 @@ class Interruption(Checkpoints):
         self.assertEqual((b"older", before), (self.bytes_of("a.exr"), self.bytes_of("c.ckpt")))
         self.assert_nothing_half_written()
 
-    def test_twice_leaves_at_once_and_nothing_half_written(self):
+    def test_twice_within_a_second_is_once(self):
         process = self.start()
         process.send_signal(signal.SIGINT)
-        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGTERM)  # as timeout does: the program, then its group
         self.assertEqual(130, process.wait(60))
+        Exr(self.folder / "a.exr")
+        self.assertGreater(self.report()["shots"], 0)
+
+    def start_that_cannot_end(self):
+        """Its picture is a pipe that nobody reads."""
+        os.mkfifo(self.folder / "a.exr")
+        return self.start()
+
+    def test_a_second_one_leaves_at_once_and_nothing_half_written(self):
+        process = self.start_that_cannot_end()
+        process.send_signal(signal.SIGINT)
+        time.sleep(1.2)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(130, process.wait(10))
+        self.assertFalse((self.folder / "r.json").exists())
         self.assert_nothing_half_written()
+        (self.folder / "a.exr").unlink()
         self.assertEqual(0, self.run_hemirad("solve", "scene.obj", *self.ARGUMENTS,
                                              "--resume", "c.ckpt",
                                              "--time-limit", "0.01").returncode)
+
+    def test_a_terminal_that_closes_never_leaves_at_once(self):
+        process = self.start_that_cannot_end()
+        process.send_signal(signal.SIGINT)
+        time.sleep(1.2)
+        process.send_signal(signal.SIGHUP)
+        with self.assertRaises(subprocess.TimeoutExpired):
+            process.wait(0.3)
+
+    def test_reaches_no_program_that_a_compiler_starts(self):
+        process = self.start()
+        meant = sum(1 << (number - 1) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+        open_to_them = 0
+        for status in pathlib.Path(f"/proc/{process.pid}/task").glob("*/status"):
+            blocked = re.search(r"SigBlk:\s*(\w+)", status.read_text())[1]
+            open_to_them += int(blocked, 16) & meant != meant
+        self.assertEqual(1, open_to_them)  # the thread that waits for them; it starts no program
+
+    def test_a_reader_of_messages_who_goes_ends_no_solve(self):
+        process = self.start()
+        process.stderr.close()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(130, process.wait(60))
+        Exr(self.folder / "a.exr")
 
     def test_killed_leaves_a_checkpoint_to_go_on_from(self):
         process = self.start()
