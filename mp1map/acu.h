@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <map>
+#include <new>
 #include <span>
 #include <string>
 #include <utility>
@@ -108,6 +110,8 @@ class Acu {
             call();
         } catch (const cl::Error& error) {
             fail(name, error);
+        } catch (const std::bad_alloc&) {  // of PoCL's compiler: see built() of program.cpp
+            std::terminate();
         }
     }
     [[noreturn]] void fail(const std::string& name, const cl::Error& error) const;

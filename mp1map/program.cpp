@@ -41,8 +41,12 @@ cl::Program built(const Device& device, const std::string& source, const std::st
     cl::Program program(device.context(), source);
     const auto all_options = "-cl-std=CL1.2" + rounding_option(device) + " " + options;
     // cl::Program::build asks for the log where there is none, and then fails at that.
-    const cl_int error =
-        clBuildProgram(program(), 1, &device.handle()(), all_options.c_str(), nullptr, nullptr);
+    // What LLVM throws (std::bad_alloc) passes through PoCL, which stays locked: releasing the
+    // program would wait for ever. So nobody is to catch it; main's handler says what it was.
+    const cl_int error = [&]() noexcept {
+        return clBuildProgram(program(), 1, &device.handle()(), all_options.c_str(), nullptr,
+                              nullptr);
+    }();
     if (error == CL_SUCCESS) return program;
     if (error != CL_BUILD_PROGRAM_FAILURE) throw cl::Error(error, "clBuildProgram");
     const auto log = build_log(program, device);

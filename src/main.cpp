@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -59,12 +61,12 @@ int run(int argc, const char* const* argv) {
     }
 }
 
-int run_and_complain(int argc, const char* const* argv) {
+/// Of what is being handled.
+int complain_of_what_was_thrown() {
     using namespace hemirad;
     using namespace std::string_literals;
     try {
-        take_signals();
-        return run(argc, argv);
+        throw;
     } catch (const CLI::ParseError& fault) {
         return complain("hemirad: "s + fault.what(), kWrongUse);
     } catch (const InputError& fault) {
@@ -82,13 +84,38 @@ int run_and_complain(int argc, const char* const* argv) {
     }
 }
 
+int complain_without_throwing() {
+    try {
+        return complain_of_what_was_thrown();
+    } catch (const std::bad_alloc&) {  // of the message itself
+        return complain_of_memory();
+    } catch (...) {
+        std::fputs("hemirad: something was thrown that is no exception\n", stderr);
+        return hemirad::kWrongUse;
+    }
+}
+
+/// Where no catch is reached: destructors of nlohmann::json ask for memory, and may not throw.
+/// Nothing is lost by leaving at once, as files have no name before they are whole. A reserve of
+/// memory for std::set_new_handler to free would be the other way; but it is gone after the first
+/// request, and what other std::terminates are called for would still be an abort without a word.
+[[noreturn]] void leave() {
+    if (std::current_exception()) _exit(complain_without_throwing());
+    std::fputs("hemirad: cannot go on, for a fault of its own\n", stderr);
+    _exit(hemirad::kWrongUse);
+}
+
+/// Before CLI11's validators ask for memory, which are made before main.
+[[gnu::constructor(101)]] void set_terminate_early() { std::set_terminate(leave); }
+
 }  // namespace
 
 int main(int argc, char** argv) {
     block_signals_of_writes();
     try {
-        return run_and_complain(argc, argv);
-    } catch (const std::bad_alloc&) {  // of the message itself
-        return complain_of_memory();
+        hemirad::take_signals();
+        return run(argc, argv);
+    } catch (...) {
+        return complain_without_throwing();
     }
 }

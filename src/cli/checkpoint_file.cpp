@@ -1,9 +1,9 @@
 #include "cli/checkpoint_file.h"
 
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
@@ -76,6 +76,13 @@ std::string_view bytes_of(const std::vector<Number>& numbers) {
     return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
 }
 
+/// Unlike iterators, read() tells of a fault on the way by stream.bad().
+void append_rest(std::istream& stream, std::string& content) {
+    std::array<char, 1 << 16> block;
+    while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
+        content.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+}
+
 std::string content_of(const fs::path& path) {
     std::error_code fault;
     const auto status = fs::status(path, fault);
@@ -86,7 +93,8 @@ std::string content_of(const fs::path& path) {
     std::string content(kMagic.size(), '\0');  // whoever passes a film has it refused at once
     stream.read(content.data(), static_cast<std::streamsize>(content.size()));
     content.resize(static_cast<std::size_t>(stream.gcount()));
-    if (content == kMagic) content.append(std::istreambuf_iterator<char>(stream), {});
+    if (content == kMagic) append_rest(stream, content);
+    if (stream.bad()) refuse(path, "cannot be read");
     return content;
 }
 
@@ -205,6 +213,7 @@ void require_no_other_file(const fs::path& file) {
     if (!stream) refuse(file, std::generic_category().message(errno));
     if (stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic)
         return;
+    if (stream.bad()) refuse(file, "cannot be read");
     throw InputError("hemirad: --checkpoint " + file.string() +
                      ": would overwrite what is no checkpoint");
 }

@@ -24,8 +24,19 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The same for every way to write a file's name; weakly_canonical alone leaves "a" as it is where
-/// there is no such file yet.
-fs::path place_of(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)); }
+/// there is no such file yet. A folder that nobody may look into has its own fault told later.
+fs::path place_of(const fs::path& file) {
+    std::error_code fault;
+    const fs::path absolute = fs::absolute(file);
+    const fs::path place = fs::weakly_canonical(absolute, fault);
+    return fault ? absolute.lexically_normal() : place;
+}
+
+bool is_device_or_pipe(const fs::path& file) {
+    std::error_code ignored;
+    const auto status = fs::status(file, ignored);
+    return fs::exists(status) && !fs::is_regular_file(status);
+}
 
 std::vector<fs::path> all_files(const SolveOptions& options) {
     std::vector<fs::path> files = output_files(options);
@@ -102,7 +113,7 @@ std::vector<fs::path> output_files(const SolveOptions& options) {
 void check_ending(std::string_view option, const fs::path& file,
                   std::initializer_list<std::string_view> endings) {
     if (std::ranges::count(endings, file.extension().native()) > 0) return;
-    if (fs::exists(file) && !fs::is_regular_file(file)) return;
+    if (is_device_or_pipe(file)) return;
     std::string names;
     for (const auto* ending = endings.begin(); ending != endings.end(); ++ending)
         names += (names.empty()                 ? ""
@@ -117,7 +128,7 @@ void check_distinct(const fs::path& scene, const std::vector<fs::path>& files) {
     for (const auto& file : files) {
         const auto place = place_of(file);
         for (const auto& other : taken)
-            if (place == other && !(fs::exists(place) && !fs::is_regular_file(place)))
+            if (place == other && !is_device_or_pipe(place))
                 throw InputError("hemirad: " + printable(file.string()) + ": would overwrite " +
                                  (other == taken.front() ? "the scene" : "another output"));
         taken.push_back(place);
@@ -169,9 +180,10 @@ void write_solved_scene(const SolveOptions& options, const Scene& scene,
                place_of(options.output).lexically_relative(place_of(folder)));
 }
 
-void write_interim_picture(const SolveOptions& options, const Scene& scene,
-                           const std::vector<Camera>& cameras, const Mesh& mesh,
-                           const ChartLayout& layout, const Solution& solution) {
+std::optional<std::string> write_interim_picture(const SolveOptions& options, const Scene& scene,
+                                                 const std::vector<Camera>& cameras,
+                                                 const Mesh& mesh, const ChartLayout& layout,
+                                                 const Solution& solution) try {
     auto attributes = attributes_of(options, solution, false);
     attributes.push_back({"ambient", std::string("what is unshot, spread evenly")});
     const Solution lit = with_ambient(mesh, solution);
@@ -183,6 +195,9 @@ void write_interim_picture(const SolveOptions& options, const Scene& scene,
                       attributes, options.pixels);
     }
     write_solved_scene(options, scene, cameras, mesh, layout, lit);
+    return {};
+} catch (const OutputError& fault) {
+    return fault.what();
 }
 
 std::vector<std::string> faint_bands(const SolveOptions& options, const Solution& solution) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,10 +39,12 @@ void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLay
                    const Solution& solution, const Solution* error = nullptr,
                    const GatheredLightmaps* gathered = nullptr);
 
-/// As write_picture() and write_solved_scene(), with_ambient(); the lightmap's header says so.
-void write_interim_picture(const SolveOptions& options, const Scene& scene,
-                           const std::vector<Camera>& cameras, const Mesh& mesh,
-                           const ChartLayout& layout, const Solution& solution);
+/// As write_picture() and write_solved_scene(), with_ambient(); the lightmap's header says so. Says
+/// why one could not be written, which ends no solve: the final picture is what counts.
+std::optional<std::string> write_interim_picture(const SolveOptions& options, const Scene& scene,
+                                                 const std::vector<Camera>& cameras,
+                                                 const Mesh& mesh, const ChartLayout& layout,
+                                                 const Solution& solution);
 
 /// The scene with its irradiance and the cameras, if the options ask for it.
 void write_solved_scene(const SolveOptions& options, const Scene& scene,

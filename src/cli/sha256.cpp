@@ -28,6 +28,7 @@ std::string sha256(const std::filesystem::path& path) {
     std::array<char, 1 << 16> block;
     while (file.read(block.data(), block.size()) || file.gcount() > 0)
         sum.add(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (file.bad()) throw OutputError(path.string() + ": cannot be read back");
     return sum.digits();
 }
 

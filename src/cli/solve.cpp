@@ -147,20 +147,27 @@ std::uint64_t resume(ProgressiveSolver& solver, const Work& work, const SolveOpt
 }
 
 Stop shoot(ProgressiveSolver& solver, const Work& work, const SolveOptions& options,
-           const Interrupts& interrupts, Checkpoints& checkpoints, ShotClock& shot_clock) {
+           const Interrupts& interrupts, Checkpoints& checkpoints, ShotClock& shot_clock,
+           std::vector<std::string>& warnings) {
     Snapshots snapshots(options.snapshots, options.resume ? work.checkpoint->state.shots : 0);
     ProgressDisplay display(progress_style(options.quiet, options.no_progress),
                             options.solver.tolerance);
+    const auto warn = [&](const std::string& warning) {
+        display.clear();
+        print_warnings(std::cerr, {warning});
+        warnings.push_back(warning);
+    };
+    bool has_warned = false;
     return solver.solve([&](const Progress& progress) {
         shot_clock.note(progress);
-        if (const auto warning = checkpoints.note(progress, solver)) {
-            display.clear();
-            print_warnings(std::cerr, {*warning});
-        }
+        if (const auto warning = checkpoints.note(progress, solver)) warn(*warning);
         display.show(progress.shots, progress.unshot_fraction);
-        if (snapshots.due(progress))
-            write_interim_picture(options, work.scene, work.cameras, work.mesh, work.layout,
-                                  solver.solution());
+        if (snapshots.due(progress)) {
+            const auto fault = write_interim_picture(options, work.scene, work.cameras, work.mesh,
+                                                     work.layout, solver.solution());
+            if (fault && !std::exchange(has_warned, true))
+                warn(*fault + "; the solve goes on, and the next snapshot is tried");
+        }
         return !interrupts.requested();
     });
 }
@@ -188,7 +195,8 @@ Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::
     outcome.resumed_shots = resume(solver, work, options);
     const Stopwatch solving;
     ShotClock shot_clock(outcome.resumed_shots);
-    outcome.stop = shoot(solver, work, options, interrupts, checkpoints, shot_clock);
+    outcome.stop =
+        shoot(solver, work, options, interrupts, checkpoints, shot_clock, outcome.warnings);
     outcome.seconds.solve = solving.seconds();
     outcome.checkpoint_fault = checkpoints.write(solver);
     outcome.solution = solver.solution();
@@ -426,9 +434,9 @@ int solve(SolveOptions options) {
     options.solver.sampling_error = outcome.accuracy.sampling_error;
     outcome.memory = work.memory;
     outcome.seconds.prepare = preparing;
-    outcome.warnings = warnings_of(work.scene, work.mesh);
-    outcome.warnings.insert(outcome.warnings.end(), work.layout.moved.begin(),
-                            work.layout.moved.end());
+    auto doubts = warnings_of(work.scene, work.mesh);
+    doubts.insert(doubts.end(), work.layout.moved.begin(), work.layout.moved.end());
+    outcome.warnings.insert(outcome.warnings.begin(), doubts.begin(), doubts.end());
     warn_of_missed_target(options, outcome);
     warn_of_faint_light(options, outcome);
     warn_of_missing_light(options, outcome);

@@ -37,6 +37,19 @@ bool sync(int descriptor) {
     return status == 0;
 }
 
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// So that a new name outlives a loss of power. File systems that cannot do it, or fail at it, have
+/// a whole file under that name all the same, the older or the newer one.
+void sync_folder(const fs::path& folder) {
+    const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    sync(descriptor);
+    close(descriptor);
+}
+
 /// Of a temporary file that has a name; a killed program may leave one.
 constexpr std::string_view kPrefix = ".hemirad-";
 
@@ -47,8 +60,7 @@ constexpr std::string_view kPrefix = ".hemirad-";
 class TemporaryFile {
   public:
     explicit TemporaryFile(const fs::path& target) : target_(target) {
-        const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
-        descriptor_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        descriptor_ = open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
         if (descriptor_ >= 0 && faccessat(AT_FDCWD, path().c_str(), W_OK, AT_EACCESS) != 0) {
             close(descriptor_);  // no /proc, so no way to its name
             descriptor_ = -1;
@@ -74,6 +86,7 @@ class TemporaryFile {
     bool take_the_targets_place() {
         kept_ = sync(descriptor_) && (!name_.empty() || give_name()) &&
                 std::rename(name_.c_str(), target_.c_str()) == 0;
+        if (kept_) sync_folder(folder_of(target_));
         return kept_;
     }
 
@@ -105,7 +118,7 @@ class TemporaryFile {
         if (!made) return false;
         flock(descriptor_, LOCK_EX);
         struct stat status {};
-        if (fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return true;
+        if (fstat(descriptor_, &status) != 0 || status.st_nlink > 0) return true;
         close(descriptor_);
         descriptor_ = -1;
         return true;
@@ -204,7 +217,7 @@ void check_writable(const fs::path& path) {
     const fs::path target = resolved(path);
     const TemporaryFile temporary(target);
     if (!temporary.is_open()) fail(path, errno);
-    remove_what_was_left(target.has_parent_path() ? target.parent_path() : ".");
+    remove_what_was_left(folder_of(target));
 }
 
 }  // namespace hemirad

@@ -7,9 +7,10 @@
 namespace hemirad {
 
 /// Writes a file that appears whole or not at all, even where the program is killed: `write` fills
-/// a temporary file in the same folder, which is synced to disk and then renamed. A symbolic link
-/// is followed; a device or pipe is written directly. Throws OutputError `PATH: reason` and leaves
-/// nothing behind on failure; an InputError or OutputError of `write` itself is passed on.
+/// a temporary file in the same folder, which is synced to disk and then renamed, and the folder
+/// synced. A symbolic link is followed; a device or pipe is written directly. Throws OutputError
+/// `PATH: reason` and leaves nothing behind on failure; an InputError or OutputError of `write`
+/// itself is passed on.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(std::ostream&)>& write);
 

@@ -44,7 +44,8 @@ InputFile read_input_file(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream bytes;
     if (stream.peek() != std::ifstream::traits_type::eof()) bytes << stream.rdbuf();
-    if (!stream) throw InputError(printable(path.string()) + ": cannot be read");
+    // A fault on the way is told to the one that copies.
+    if (!stream || !bytes) throw InputError(printable(path.string()) + ": cannot be read");
     file.bytes = std::move(bytes).str();
     return file;
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Calls that fail, devices that vanish or are small: exit codes, messages, files. HEMIRAD and
 INJECT_FAULTS as in faults.py."""
+import json
 import pathlib
 import re
 import sys
@@ -34,6 +35,7 @@ class Faults(unittest.TestCase):
             done = faults.run(arguments, self.folder, fail, **options)
             self.assertGreater(done.failed, 0, "was not called")
             faults.check(done, self.folder, before, codes or faults.codes_of(function))
+        return done
 
 
 class Injected(Faults):
@@ -65,11 +67,79 @@ class Injected(Faults):
         for name in ("write", "fsync"):
             self.assert_harmless(faults.QUICK, before, name, name + ":1", {0}, error=4)
 
-    def test_memory_may_be_out(self):
-        self.run_whole(faults.QUICK)
+    def test_each_output_may_be_the_one_that_fails(self):
+        """When it is written last, at one call and with one error after the other."""
+        each = faults.Each(faults.EACH, self.folder)
+        kinds = ("write", "rename", "fclose", "linkat", "fsync", "writev")
+        last = {(call.target, call.function): call for call in each.calls if call.target}
+        targets = sorted({target for target, _ in last})
+        self.assertEqual(10, len(targets))
+        for index, target in enumerate(targets):
+            function = next(kind for kind in (*kinds[index % 5:], *kinds) if (target, kind) in last)
+            error = faults.ERRORS[function][index // 5]
+            with self.subTest(target, function=function, error=error):
+                each.check_file(last[target, function], error)
+        reads = {pathlib.Path(call.what).name: call for call in each.calls
+                 if call.function == "read"}
+        for name in ("scene.obj", "scene.mtl", "a.exr", "c.ckpt"):
+            with self.subTest("read", name=name):
+                each.check_file(reads[name], 5)
+
+    def test_a_snapshot_that_cannot_be_written_is_told_once_and_ends_no_solve(self):
+        arguments = (*faults.QUICK, "-o", "a.exr", "--report", "r.json", "--snapshot-every", "2")
+        self.run_whole(arguments)
+        whole = (self.folder / "a.exr").read_bytes()
+        warning = "a.exr: No space left on device; the solve goes on, and the next snapshot is tried"
+
+        done = faults.run(arguments, self.folder, "rename:1", 28)
+        self.assertEqual((0, f"warning: {warning}\n"), (done.code, done.stderr))
+        self.assertEqual(whole, (self.folder / "a.exr").read_bytes())
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual([warning], report["warnings"])
+
+        faults.put(self.folder, {})
+        done = faults.run(arguments, self.folder, "rename:1+", 28)
+        self.assertEqual(3, done.code)
+        self.assertEqual([f"warning: {warning}", "a.exr: No space left on device"],
+                         done.stderr.splitlines())
+        self.assertEqual({}, faults.files(self.folder))
+
+    def test_a_checkpoint_that_cannot_be_read_to_its_end_is_told(self):
+        self.run_whole(faults.EACH)
+        arguments = (*faults.EACH, "--resume", "c.ckpt")
+        trace = self.run_whole(arguments, traced=True).trace
         before = faults.files(self.folder)
-        for fail in ("new:2000", "new:2000+"):
-            self.assert_harmless(faults.QUICK, before, "new", fail, {1})
+        for number in (number for function, number, what in trace
+                       if function == "read" and what.endswith("/c.ckpt")):
+            done = self.assert_harmless(arguments, before, "read", f"read:{number}", {1}, error=5)
+            self.assertTrue(done.stderr.startswith("c.ckpt: cannot be read"), done.stderr)
+
+    def test_an_output_that_cannot_be_asked_for_is_tried(self):
+        """Whether it is another's, or a pipe: where a folder may not be looked into, for one."""
+        arguments = (*faults.QUICK, "-o", "a.exr")
+        self.run_whole(arguments)
+        trace = self.run_whole(arguments, traced=True).trace
+        before = faults.files(self.folder)
+        for name in ("stat", "realpath"):
+            number = next(number for function, number, what in trace
+                          if function == name and what.endswith("/a.exr"))
+            self.assert_harmless(arguments, before, name, f"{name}:{number}", {0}, error=13)
+
+    def test_a_part_of_a_device_and_mapped_memory_may_be_refused(self):
+        whole = self.run_whole(faults.MAPPED)
+        before = faults.files(self.folder)
+        for name in ("clCreateSubDevices", "clEnqueueMapBuffer", "clEnqueueUnmapMemObject"):
+            last = f"{name}:{whole.calls[name]}"
+            self.assert_harmless(faults.MAPPED, before, name, last, {2})
+
+    def test_memory_may_be_out(self):
+        """The report's JSON asks for memory when it is taken apart, too."""
+        arguments = (*faults.QUICK, "--report", "r.json")
+        allocations = self.run_whole(arguments).calls["new"]
+        before = faults.files(self.folder)
+        late = (allocations - i for i in range(3, 60, 10))
+        for fail in ("new:1", "new:2000", "new:2000+", *(f"new:{number}" for number in late)):
+            self.assert_harmless(arguments, before, "new", fail, {1})
 
     def test_the_program_calls_nothing_newer_than_opencl_1_2(self):
         binary = pathlib.Path(faults.os.environ["HEMIRAD"]).read_bytes()

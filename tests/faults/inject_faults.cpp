@@ -4,7 +4,10 @@
 //   HEMI_FAIL=NAME:N[+]      the N-th call of NAME fails, with + all later ones, too
 //   HEMI_FAIL_WITH=NUMBER    errno or OpenCL's error; "short": half is written, then the disk is
 //   full HEMI_FAIL_IN=all         counts the calls of device drivers and their compilers, too
+//   HEMI_NAMED=1             the file system knows no files without name
 //   HEMI_CALLS=FILE          gets a line "NAME calls failed" of each function at the end
+//   HEMI_TRACE=FILE          gets a line "NAME N WHAT" of each call for a file, which is WHAT, or
+//                            for an argument of a kernel, "KERNEL INDEX"
 //   HEMI_DEVICE=HEX=VALUE,.. answers of clGetDeviceInfo: a number, or a text
 //
 // OpenCL's functions and those of files take pointers and whole numbers only, a machine word each,
@@ -12,6 +15,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <link.h>
+#include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -44,12 +48,20 @@ struct Plan {
     char name[64];
     long number;
     Word error;
+    int trace;  // descriptor, or less than 0
 } g_plan;
 std::atomic<Function*> g_functions{nullptr};
 
 const char* set_to(const char* name) {
     const char* const value = std::getenv(name);
     return value == nullptr ? "" : value;
+}
+
+// As the plain functions are our own, and would count.
+int created(const char* path) {
+    if (*path == 0) return -1;
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC;
+    return static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, kFlags, 0666));
 }
 
 void read_plan() {
@@ -66,6 +78,7 @@ void read_plan() {
     g_plan.has_error = *with != 0 && !g_plan.is_short;
     g_plan.error = std::atol(with);
     g_plan.all_callers = std::strcmp(set_to("HEMI_FAIL_IN"), "all") == 0;
+    g_plan.trace = created(set_to("HEMI_TRACE"));
     g_plan.known = true;
 }
 
@@ -75,8 +88,12 @@ bool is_of(const char* library, void* caller) {
            std::strstr(from.dlfo_link_map->l_name, library) != nullptr;
 }
 
-// What drivers and compilers call for themselves is theirs to handle.
+std::atomic<bool> g_started{false};
+
+// What drivers and compilers call for themselves is theirs to handle, and what libraries do when
+// they are loaded.
 bool is_ours(void* caller) {
+    if (!g_started) return false;
     for (const char* theirs : {"pocl", "OpenCL", "LLVM", "clang", "hwloc", "/libc.so", "/ld-"})
         if (is_of(theirs, caller)) return false;
     return true;
@@ -90,11 +107,38 @@ void note(Function& function) {
     } while (!g_functions.compare_exchange_weak(first, &function));
 }
 
-bool fails(Function& function, void* caller) {
+// What a call is for. Plain memory, as whoever asks may be asking for memory.
+struct What {
+    char text[256] = {};
+};
+
+bool is_traced() {
+    read_plan();
+    return g_plan.known && g_plan.trace >= 0;
+}
+
+What path(Word path) {
+    What what;
+    if (path != 0 && is_traced()) std::strncpy(what.text, reinterpret_cast<const char*>(path), 255);
+    return what;
+}
+
+What file(Word descriptor) {
+    What what;
+    if (!is_traced()) return what;
+    char link[64];
+    std::snprintf(link, sizeof link, "/proc/self/fd/%ld", static_cast<long>(descriptor));
+    if (syscall(SYS_readlink, link, what.text, 255) < 0) what.text[0] = 0;
+    return what;
+}
+
+bool fails(Function& function, void* caller, const What* what = nullptr) {
     read_plan();
     if (!g_plan.known || !(g_plan.all_callers || is_ours(caller))) return false;
     const long call = ++function.calls;
     if (call == 1) note(function);
+    if (what != nullptr && g_plan.trace >= 0)
+        dprintf(g_plan.trace, "%s %ld %s\n", function.name, call, what->text);
     if (std::strcmp(g_plan.name, function.name) != 0) return false;
     const bool now = call == g_plan.number || (g_plan.for_ever && call > g_plan.number);
     if (now) ++function.failed;
@@ -117,11 +161,18 @@ Word fail_with_errno(const Function& function) {
 }
 
 __attribute__((destructor)) void tell() {
-    const int file = static_cast<int>(
-        openat(AT_FDCWD, set_to("HEMI_CALLS"), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    const int file = created(set_to("HEMI_CALLS"));
     if (file < 0) return;
     for (const Function* one = g_functions; one != nullptr; one = one->next)
         dprintf(file, "%s %ld %ld\n", one->name, one->calls.load(), one->failed.load());
+}
+
+// Whoever leaves at once runs no destructors.
+extern "C" [[noreturn]] void leave_at_once(int status) asm("_exit");
+extern "C" [[noreturn]] void leave_at_once(int status) {
+    tell();
+    syscall(SYS_exit_group, status);
+    __builtin_unreachable();
 }
 
 // The answer of HEMI_DEVICE to the question `what`; null where it has none.
@@ -180,11 +231,23 @@ Word answer_for(Word what, const char* answer, Word size, void* value, std::size
         return 0;                                                                     \
     }
 
-#define FAILS_BY_ERRNO(name, error)                                    \
-    EXPORTED(name) {                                                   \
-        static Function function{#name, error};                        \
-        if (fails(function, CALLER)) return fail_with_errno(function); \
-        return real(function)(PASSED_ON);                              \
+// `what` is path(ARGUMENT) or file(ARGUMENT).
+#define FAILS_BY_ERRNO(name, error, what)                                           \
+    EXPORTED(name) {                                                                \
+        static Function function{#name, error};                                     \
+        const What called_for = what;                                               \
+        if (fails(function, CALLER, &called_for)) return fail_with_errno(function); \
+        return real(function)(PASSED_ON);                                           \
+    }
+
+// The same where null tells of it.
+#define FAILS_BY_NULL(name, error, what)                                             \
+    EXPORTED(name) {                                                                 \
+        static Function function{#name, error};                                      \
+        const What called_for = what;                                                \
+        if (!fails(function, CALLER, &called_for)) return real(function)(PASSED_ON); \
+        fail_with_errno(function);                                                   \
+        return 0;                                                                    \
     }
 
 FAILS_BY_STATUS(clGetPlatformIDs)
@@ -210,7 +273,6 @@ FAILS_BY_STATUS(clReleaseProgram)
 FAILS_BY_POINTER(clCreateKernel, c)
 FAILS_BY_STATUS(clGetKernelWorkGroupInfo)
 FAILS_BY_STATUS(clReleaseKernel)
-FAILS_BY_STATUS(clSetKernelArg)
 FAILS_BY_STATUS(clEnqueueNDRangeKernel)
 FAILS_BY_STATUS(clEnqueueReadBuffer)
 FAILS_BY_STATUS(clEnqueueWriteBuffer)
@@ -230,49 +292,89 @@ EXPORTED(clGetDeviceInfo) {
     return answer_for(b, answer, c, reinterpret_cast<void*>(d), reinterpret_cast<std::size_t*>(e));
 }
 
-FAILS_BY_ERRNO(open, ENFILE)
-FAILS_BY_ERRNO(read, EIO)
-FAILS_BY_ERRNO(fsync, EIO)
-FAILS_BY_ERRNO(rename, EIO)
-FAILS_BY_ERRNO(linkat, ENOSPC)
-FAILS_BY_ERRNO(unlink, EIO)
-FAILS_BY_ERRNO(close, EIO)
-FAILS_BY_ERRNO(flock, ENOLCK)
-FAILS_BY_ERRNO(fstat, EIO)
-FAILS_BY_ERRNO(access, EIO)
-FAILS_BY_ERRNO(faccessat, EIO)
-FAILS_BY_ERRNO(madvise, EINVAL)
-
-extern "C" FILE* fopen64(const char* path, const char* mode) {
-    static Function function{"fopen64", EMFILE};
-    if (!fails(function, CALLER))
-        return real<FILE* (*)(const char*, const char*)>(function)(path, mode);
-    fail_with_errno(function);
-    return nullptr;
+What argument(Word kernel, Word index) {
+    static Function information{"clGetKernelInfo", 0};
+    What what;
+    if (!is_traced()) return what;
+    constexpr Word kFunctionName = 0x1190;  // CL_KERNEL_FUNCTION_NAME
+    char name[200] = {};
+    real(information)(kernel, kFunctionName, sizeof name - 1, reinterpret_cast<Word>(name), 0, 0, 0,
+                      0, 0, 0);
+    std::snprintf(what.text, sizeof what.text, "%s %ld", name, static_cast<long>(index));
+    return what;
 }
 
+// Behind the constructors of libraries, before the program's own.
+EXPORTED(__libc_start_main) {
+    static Function function{"__libc_start_main", 0};
+    g_started = true;
+    return real(function)(PASSED_ON);
+}
+
+// clSetKernelArg(kernel, index, size, value)
+EXPORTED(clSetKernelArg) {
+    static Function function{"clSetKernelArg", -5};
+    const What what = argument(a, b);
+    if (fails(function, CALLER, &what)) return error_of(function);
+    return real(function)(PASSED_ON);
+}
+
+EXPORTED(open) {
+    static Function function{"open", ENFILE};
+    if ((b & O_TMPFILE) == O_TMPFILE && *set_to("HEMI_NAMED") != 0) {
+        errno = EOPNOTSUPP;
+        return -1;
+    }
+    const What what = path(a);
+    if (fails(function, CALLER, &what)) return fail_with_errno(function);
+    return real(function)(PASSED_ON);
+}
+
+FAILS_BY_ERRNO(openat, EIO, path(b))
+FAILS_BY_ERRNO(read, EIO, file(a))
+FAILS_BY_ERRNO(fsync, EIO, file(a))
+FAILS_BY_ERRNO(rename, EIO, path(b))
+FAILS_BY_ERRNO(linkat, ENOSPC, path(d))
+FAILS_BY_ERRNO(unlink, EIO, path(a))
+FAILS_BY_ERRNO(close, EIO, file(a))
+FAILS_BY_ERRNO(flock, ENOLCK, file(a))
+FAILS_BY_ERRNO(fstat, EIO, file(a))
+FAILS_BY_ERRNO(stat, EIO, path(a))
+FAILS_BY_ERRNO(lstat, EIO, path(a))
+FAILS_BY_ERRNO(readlink, EIO, path(a))
+FAILS_BY_ERRNO(access, EIO, path(a))
+FAILS_BY_ERRNO(faccessat, EIO, path(b))
+FAILS_BY_ERRNO(madvise, EINVAL, What{})
+FAILS_BY_NULL(realpath, EIO, path(a))
+FAILS_BY_NULL(fdopendir, ENOMEM, file(a))
+FAILS_BY_NULL(readdir, EIO, What{})
+FAILS_BY_NULL(fopen64, EMFILE, path(a))
+
 // The file is closed nevertheless, as Linux does it.
-extern "C" int fclose(FILE* file) {
+extern "C" int fclose(FILE* stream) {
     static Function function{"fclose", EIO};
-    const bool failed = fails(function, CALLER);
-    const int status = real<int (*)(FILE*)>(function)(file);
+    const What what = file(fileno(stream));
+    const bool failed = fails(function, CALLER, &what);
+    const int status = real<int (*)(FILE*)>(function)(stream);
     return failed ? static_cast<int>(fail_with_errno(function)) : status;
 }
 
 // A disk that fills up takes the first half, and nothing of the rest.
-extern "C" ssize_t write(int file, const void* bytes, std::size_t count) {
+extern "C" ssize_t write(int descriptor, const void* bytes, std::size_t count) {
     static Function function{"write", ENOSPC};
     const auto really = real<ssize_t (*)(int, const void*, std::size_t)>(function);
-    if (!fails(function, CALLER)) return really(file, bytes, count);
-    if (g_plan.is_short && function.failed == 1) return really(file, bytes, count / 2);
+    const What what = file(descriptor);
+    if (!fails(function, CALLER, &what)) return really(descriptor, bytes, count);
+    if (g_plan.is_short && function.failed == 1) return really(descriptor, bytes, count / 2);
     return fail_with_errno(function);
 }
 
-extern "C" ssize_t writev(int file, const iovec* parts, int count) {
+extern "C" ssize_t writev(int descriptor, const iovec* parts, int count) {
     static Function function{"writev", ENOSPC};
     const auto really = real<ssize_t (*)(int, const iovec*, int)>(function);
-    if (!fails(function, CALLER)) return really(file, parts, count);
-    if (g_plan.is_short && function.failed == 1) return really(file, parts, 1);
+    const What what = file(descriptor);
+    if (!fails(function, CALLER, &what)) return really(descriptor, parts, count);
+    if (g_plan.is_short && function.failed == 1) return really(descriptor, parts, 1);
     return fail_with_errno(function);
 }
 

@@ -60,13 +60,14 @@ inline void require_scene(const Scene& scene) {
     }
 }
 
-/// A folder of the process, in memory where there is one.
+/// A folder of the process: in TMPDIR or, where that is not set, in memory if there is such a
+/// folder. What libFuzzer ends leaves it behind, so tools/fuzz sets TMPDIR and removes that.
 class Scratch {
   public:
     Scratch() {
         const std::filesystem::path memory = "/dev/shm";
-        const auto base =
-            std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
+        const bool in_memory = std::getenv("TMPDIR") == nullptr && std::filesystem::exists(memory);
+        const auto base = in_memory ? memory : std::filesystem::temp_directory_path();
         std::string pattern = (base / "hemirad-fuzz-XXXXXX").string();
         require(mkdtemp(pattern.data()) != nullptr, "a scratch folder");
         path_ = pattern;
