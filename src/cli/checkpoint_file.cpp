@@ -25,6 +25,9 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view kMagic = "hemirad checkpoint ";
 constexpr std::string_view kFormat = "1";
 constexpr std::size_t kDigits = 64;  // of a SHA-256
+/// Bytes of the line of JSON, some 2000 of ours; an ordered object compares a new member with all
+/// before it.
+constexpr std::size_t kLongestHead = 1 << 16;
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& reason) {
     throw InputError(printable(file.string() + ": " + reason));
@@ -194,6 +197,9 @@ Checkpoint read_checkpoint(const fs::path& file) {
     const auto content = content_of(file);
     const auto body = checked_body(file, content);
     const auto head = body.substr(0, body.find('\n'));
+    if (head.size() > kLongestHead)
+        refuse(file, "no checkpoint that hemirad wrote: its second line has " +
+                         std::to_string(head.size()) + " bytes");
     try {
         const auto json = Json::parse(head);
         return {identity_from(json.at("made_with")), json.at("tolerance"),

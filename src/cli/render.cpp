@@ -99,16 +99,25 @@ void add_picture_options(CLI::App& command, RenderOptions& options) {
     throw InputError(scene.file + ": " + reason);
 }
 
+/// A few, and how many more.
+std::string names_of(const std::vector<Camera>& cameras) {
+    constexpr std::size_t kNamed = 5;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(kNamed, cameras.size()); ++i)
+        names += (i > 0 ? ", " : "") + cameras[i].name;
+    if (cameras.size() > kNamed)
+        names += " and " + std::to_string(cameras.size() - kNamed) + " more";
+    return names;
+}
+
 Camera named_camera(const LitScene& lit, const std::string& name) {
     const auto& cameras = lit.cameras;
     if (name.empty() && cameras.size() == 1) return cameras[0];
     const auto found = std::ranges::find(cameras, name, &Camera::name);
     if (!name.empty() && found != cameras.end()) return *found;
-    std::string names;
-    for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
     if (cameras.empty()) fail(lit.scene, "has no cameras; --eye X,Y,Z needs none");
     fail(lit.scene, (name.empty() ? "" : "no camera \"" + printable(name) + "\"; it ") +
-                        "has the cameras " + names +
+                        "has the cameras " + names_of(cameras) +
                         "; --camera names one, --eye X,Y,Z needs none");
 }
 

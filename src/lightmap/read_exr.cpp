@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "errors.h"
-#include "lightmap/chart_layout.h"
 #include "lightmap/exr_header.h"
 #include "scene/input_file.h"
 #include "scene/printable.h"
@@ -19,10 +18,6 @@ namespace hemirad {
 namespace {
 
 constexpr std::string_view kOwn = "hemirad.";
-
-/// Bytes of pixels that a byte of the file holds at most: deflate's of one value (RFC 1951: 258
-/// bytes in two bits), which no scene's other compressions exceed by much.
-constexpr std::uint64_t kMostPacked = 1032;
 
 using Values = std::vector<float>;
 
@@ -52,7 +47,7 @@ std::vector<std::string> layers_in(const Imf::ChannelList& channels,
     return layers;
 }
 
-/// Rooms for all channels that are wanted; the window's size is checked before any is made.
+/// Rooms for all channels that are wanted.
 std::vector<Request> requests_of(const std::filesystem::path& path, const Imf::Header& header,
                                  Lightmap& lightmap) {
     std::vector<Request> requests;
@@ -76,29 +71,11 @@ std::vector<Request> requests_of(const std::filesystem::path& path, const Imf::H
     return requests;
 }
 
-/// A few bytes may announce more texels than there is memory.
-void require_held(const std::filesystem::path& path, const Imf::Header& header,
-                  const Lightmap& lightmap) {
-    constexpr std::uint64_t kLeastSample = 2;  // bytes, of half
-    std::uint64_t channels = 0;
-    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) ++channels;
-    const std::uint64_t bytes = std::filesystem::file_size(path);
-    if (channels * kLeastSample * lightmap.texel_count() <= kMostPacked * bytes) return;
-    fail(path, "announces " + std::to_string(lightmap.width) + " x " +
-                   std::to_string(lightmap.height) + " texels of " + std::to_string(channels) +
-                   " channels, more than its " + std::to_string(bytes) + " bytes can hold");
-}
-
-void set_size(const std::filesystem::path& path, const Imf::Header& header, Lightmap& lightmap) {
+/// The sides are checked.
+void set_size(const Imf::Header& header, Lightmap& lightmap) {
     const auto window = header.dataWindow();
-    const auto width = std::int64_t{window.max.x} - window.min.x + 1;
-    const auto height = std::int64_t{window.max.y} - window.min.y + 1;
-    if (width < 1 || height < 1 || width > kLargestAtlas || height > kLargestAtlas)
-        fail(path, "is " + std::to_string(width) + " x " + std::to_string(height) +
-                       " texels, a lightmap is at most " + std::to_string(kLargestAtlas) +
-                       " a side");
-    lightmap.width = static_cast<std::uint32_t>(width);
-    lightmap.height = static_cast<std::uint32_t>(height);
+    lightmap.width = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);
+    lightmap.height = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
 }
 
 void read_pixels(Imf::InputFile& file, Lightmap& lightmap, const std::vector<Request>& requests) {
@@ -136,13 +113,11 @@ std::map<std::string, std::string> texts_in(const Imf::Header& header) {
 
 ExrLightmap read_exr(const std::filesystem::path& path, const std::vector<std::string>& bands) {
     if (!std::filesystem::is_regular_file(path)) fail(path, "no such file");
-    if (const auto name = oversized_attribute(path))
-        fail(path, "attribute " + in_quotes(*name) + " announces more bytes than there are");
+    check_exr_headers(path);
     try {
         Imf::InputFile file(path.c_str(), 0);
         ExrLightmap exr{{0, 0, bands, {}, {}}, texts_in(file.header())};
-        set_size(path, file.header(), exr.lightmap);
-        require_held(path, file.header(), exr.lightmap);
+        set_size(file.header(), exr.lightmap);
         const auto requests = requests_of(path, file.header(), exr.lightmap);
         read_pixels(file, exr.lightmap, requests);
         require_finite(path, requests);

@@ -96,6 +96,7 @@ void copy_element(const Accessor& accessor, const Elements& from, std::size_t in
 void fill_sparse(const Accessor& accessor, std::vector<double>& values) {
     const auto& sparse = accessor.source.sparse;
     const auto count = static_cast<std::size_t>(sparse.count);
+    if (count > accessor.source.count) accessor.fail("has more sparse values than elements");
     const auto offset = [](int bytes) { return static_cast<std::size_t>(bytes); };
     const Elements indices =
         locate(accessor, {sparse.indices.bufferView, offset(sparse.indices.byteOffset), count, 1,

@@ -19,7 +19,10 @@ double number_in(const GltfFile& gltf, const std::string& path, const Json& json
 
 std::string name_of(const GltfFile& gltf, std::size_t node, std::size_t camera) {
     for (const std::string& name : {gltf.model.nodes[node].name, gltf.model.cameras[camera].name})
-        if (!name.empty()) return printable(name);
+        if (!name.empty()) {
+            check_name(gltf.file, "camera", name);
+            return printable(name);
+        }
     return "camera" + std::to_string(camera);
 }
 

@@ -78,6 +78,9 @@ constexpr auto kKnownExtensions = std::to_array<std::string_view>({
     "KHR_mesh_quantization",
 });
 
+/// Bytes of an object's key in the path that messages show.
+constexpr std::size_t kLongestKey = 100;
+
 /// Calls visit(path, value) for every value that a pattern such as "nodes/*/mesh" reaches.
 template <class Visit>
 void for_each(const Json& value, std::string_view pattern, const std::string& path, Visit& visit) {
@@ -94,7 +97,7 @@ void for_each(const Json& value, std::string_view pattern, const std::string& pa
     }
     if (!value.is_structured()) return;
     for (const auto& [name, child] : value.items()) {
-        for_each(child, rest, prefix + printable(name), visit);
+        for_each(child, rest, prefix + printable(name.substr(0, kLongestKey)), visit);
     }
 }
 

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "scene/gltf_file.h"
 
@@ -95,6 +96,15 @@ Json parse_json(const InputFile& file) {
     }
 }
 
+struct Folder {
+    std::filesystem::path path;
+    std::set<std::filesystem::path> read = {};
+    std::uint64_t read_again = 0;  ///< bytes of files that were read before
+};
+
+/// Buffers, and images, may share a file, and each holds it whole.
+constexpr std::uint64_t kMostReadAgain = std::uint64_t{1} << 28;
+
 /// What tinygltf may read: files in the scene's folder. It also looks in the working directory and
 /// decodes %-escapes after check_gltf has seen the reference.
 bool is_in_folder(const std::string& path, const std::filesystem::path& folder) {
@@ -104,14 +114,21 @@ bool is_in_folder(const std::string& path, const std::filesystem::path& folder) 
 }
 
 bool may_read(const std::string& path, void* folder) {
-    return is_in_folder(path, *static_cast<const std::filesystem::path*>(folder)) &&
+    return is_in_folder(path, static_cast<const Folder*>(folder)->path) &&
            std::filesystem::is_regular_file(path);
+}
+
+bool is_read_rarely(Folder& folder, const std::filesystem::path& path) {
+    if (folder.read.insert(path.lexically_normal()).second) return true;
+    folder.read_again += std::filesystem::file_size(path);
+    return folder.read_again <= kMostReadAgain;
 }
 
 bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
                 void* folder) {
     std::ifstream stream(path, std::ios::binary);
-    if (!may_read(path, folder) || !stream) {
+    if (!may_read(path, folder) || !stream ||
+        !is_read_rarely(*static_cast<Folder*>(folder), path)) {
         *error += "cannot be read";
         return false;
     }
@@ -130,8 +147,8 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
 }
 
 bool load_model(const InputFile& file, tinygltf::Model& model, std::string& error) {
-    std::filesystem::path folder = file.path.parent_path();
-    if (folder.empty()) folder = ".";
+    Folder folder{file.path.parent_path()};
+    if (folder.path.empty()) folder.path = ".";
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keep_encoded, nullptr);
     loader.SetFsCallbacks({may_read, keep_path, read_whole, nullptr, &folder});
@@ -139,10 +156,11 @@ bool load_model(const InputFile& file, tinygltf::Model& model, std::string& erro
     const auto size = static_cast<unsigned>(file.bytes.size());
     if (is_binary(file)) {
         const auto* bytes = reinterpret_cast<const unsigned char*>(file.bytes.data());
-        return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, size, folder.string());
+        return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, size,
+                                           folder.path.string());
     }
     return loader.LoadASCIIFromString(&model, &error, &warning, file.bytes.data(), size,
-                                      folder.string());
+                                      folder.path.string());
 }
 
 }  // namespace

@@ -61,6 +61,14 @@ std::string in_quotes(std::string_view text) {
     return result += '"';
 }
 
+void check_name(const InputFile& file, const std::string& kind, std::string_view name) {
+    constexpr std::size_t kLongest = 1000;  // bytes; Blender's have 63, paths of IFC some hundred
+    if (name.size() <= kLongest) return;
+    fail(file, kind + ' ' + in_quotes(name),
+         "its name has " + std::to_string(name.size()) + " bytes, more than the " +
+             std::to_string(kLongest) + " that are read");
+}
+
 std::string number(double value) {
     std::array<char, 512> text{};
     std::snprintf(text.data(), text.size(), "%.2f", value);

@@ -22,6 +22,9 @@ InputFile read_input_file(const std::filesystem::path& path);
 
 /// The printable text in double quotes, for messages: what is long is cut off.
 std::string in_quotes(std::string_view text);
+/// Throws InputError where the name is longer than any that a program gives: tables repeat names in
+/// each row, so that a small file would make a large one. `kind` says what has it.
+void check_name(const InputFile& file, const std::string& kind, std::string_view name);
 /// At least two decimals, and as many as tell the value from its rounding: 1.20, 1.00001.
 std::string number(double value);
 

@@ -20,6 +20,8 @@ namespace {
 /// Corners and vertices of all nodes together: some 10 GB. A mesh is small in a file whose nodes
 /// show it a million times, and so are primitives that share their accessors.
 constexpr std::size_t kMostPlaced = 100'000'000;
+/// Of those, what a file may show that does not hold it: a corner takes a byte at least.
+constexpr std::size_t kMostMultiplied = 10'000'000;
 
 struct Builder {
     const GltfFile& gltf;
@@ -169,6 +171,7 @@ std::uint32_t add_object(Builder& builder, std::size_t node) {
     const auto& source = builder.gltf.model.nodes[node];
     const auto& mesh = builder.gltf.model.meshes[static_cast<std::size_t>(source.mesh)];
     const std::string& name = source.name.empty() ? mesh.name : source.name;
+    check_name(builder.gltf.file, "object", name);
     builder.scene.objects.push_back(name.empty() ? "node" + std::to_string(node) : printable(name));
     return static_cast<std::uint32_t>(builder.scene.objects.size() - 1);
 }
@@ -310,10 +313,13 @@ void check_placed(const GltfFile& gltf, const std::vector<PlacedNode>& nodes) {
             entry->second = placed_count(gltf, gltf.model.meshes[static_cast<std::size_t>(mesh)]);
         count += entry->second;
     }
-    if (count <= kMostPlaced) return;
+    std::size_t bytes = 0;
+    for (const auto& buffer : gltf.model.buffers) bytes += buffer.data.size();
+    const std::size_t most = std::min(kMostPlaced, kMostMultiplied + bytes);
+    if (count <= most) return;
     fail(gltf.file, "nodes",
          "show meshes of " + std::to_string(count) + " vertices and corners, more than the " +
-             std::to_string(kMostPlaced) + " that are read");
+             std::to_string(most) + " that are read of " + std::to_string(bytes) + " bytes");
 }
 
 /// TEXCOORD_1 of each vertex: by a habit of exporters where it lies in a lightmap. None where the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@ struct ObjFile {
     std::size_t vertex_count = 0;  // read so far: relative indices count back from here
     std::size_t face_count = 0;
     std::string object = {}, group = {}, material = {};
+    std::set<std::filesystem::path> libraries = {};  ///< read: again they would add nothing
     std::map<std::string, tinyobj::material_t> library = {};
     std::map<std::pair<std::string, std::string>, std::uint32_t> object_indices = {};
     std::map<std::string, std::uint32_t> material_indices = {};
@@ -107,6 +109,7 @@ void set_group(ObjFile& obj, const char** names, int count) {
         if (i > 0) obj.group += ' ';
         obj.group += names[i];
     }
+    check_name(obj.file, "group", obj.group);
 }
 
 void read_library(ObjFile& obj, const std::string& reference, const std::filesystem::path& path) {
@@ -136,6 +139,7 @@ class LibraryReader : public tinyobj::MaterialReader {
         const std::string element = "mtllib " + in_quotes(reference);
         const auto path = resolve_reference(obj_.file, trimmed(reference));
         if (!path) fail(obj_.file, element, "must be a file in the scene's folder");
+        if (!obj_.libraries.insert(*path).second) return false;
         if (std::filesystem::exists(*path)) {
             read_library(obj_, reference, *path);
         } else {
@@ -161,12 +165,14 @@ tinyobj::callback_t callbacks() {
     };
     callback.usemtl_cb = [](void* user_data, const char* name, int) {
         obj_of(user_data).material = trimmed(name);
+        check_name(obj_of(user_data).file, "material", obj_of(user_data).material);
     };
     callback.group_cb = [](void* user_data, const char** names, int count) {
         set_group(obj_of(user_data), names, count);
     };
     callback.object_cb = [](void* user_data, const char* name) {
         obj_of(user_data).object = trimmed(name);
+        check_name(obj_of(user_data).file, "object", obj_of(user_data).object);
         obj_of(user_data).group.clear();
     };
     return callback;

@@ -163,7 +163,9 @@ void read_properties(Vs3File& vs3, Vs3Fields& fields, Vs3Surface& surface) {
     surface.emittance = fields.number("emittance");
     if (surface.emittance < 0 || surface.emittance > 1)
         fields.place().fail("emittance " + number(surface.emittance) + " is not within 0 and 1");
-    surface.name = printable(fields.word("name"));
+    const std::string_view name = fields.word("name");
+    check_name(vs3.file, "surface", name);
+    surface.name = printable(name);
     if (fields.has_more())
         warn(vs3.scene, named("line", int(fields.place().number)),
              in_quotes(fields.word("rest")) + " is not read: names hold no blanks");

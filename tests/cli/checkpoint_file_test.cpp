@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "cli/sha256.h"
 #include "errors.h"
 
 namespace hemirad::checkpoint_file_test {
@@ -105,6 +106,15 @@ TEST_F(CheckpointFile, SaysWhatIsWrong) {
     EXPECT_EQ(refusal(), "a checkpoint of format 2; this hemirad reads format 1");
     put("hemirad checkpoint 1\b\nof a format that steers a terminal");
     EXPECT_EQ(refusal(), "a checkpoint of format 1\\x08; this hemirad reads format 1");
+}
+
+TEST_F(CheckpointFile, IsRefusedWithAHeadLongerThanOurs) {
+    std::string body = "hemirad checkpoint 1\n{\"a\":\"" + std::string(1 << 16, 'a') + "\"}\n";
+    Sha256 sum;
+    sum.add(body);
+    put(body + sum.digits());
+
+    EXPECT_EQ(refusal(), "no checkpoint that hemirad wrote: its second line has 65544 bytes");
 }
 
 TEST_F(CheckpointFile, ReplacesNothingButCheckpoints) {

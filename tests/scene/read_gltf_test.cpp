@@ -65,6 +65,50 @@ TEST_F(ReadGltf, ReadsATriangleWithoutMaterialAsWhite) {
     EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+std::string big_endian(std::size_t value) {
+    std::string bytes = little_endian(value);
+    std::reverse(bytes.begin(), bytes.end());
+    return bytes;
+}
+
+/// A PNG of red, green and blue; nobody looks at its checksums.
+std::string png(std::size_t width, std::size_t height, char bits, const std::string& deflated) {
+    const std::string header = "IHDR" + big_endian(width) + big_endian(height) + bits + "\x02" +
+                               std::string(3 + 4, '\0');  // methods and a checksum
+    return "\x89PNG\r\n\x1a\n" + big_endian(13) + header + big_endian(deflated.size()) + "IDAT" +
+           deflated + std::string(4, '\0') + big_endian(0) + "IEND" + std::string(4, '\0');
+}
+
+/// As far as its size.
+std::string png_of(std::size_t width, std::size_t height, char bits = 8) {
+    return "data:image/png;base64," + base64(png(width, height, bits, ""));
+}
+
+/// Stored, not compressed: a block a row (RFC 1951, sec. 3.2.4).
+std::string white_png(std::size_t side) {
+    const std::size_t length = 1 + 3 * side;
+    std::string rows("\x78\x01", 2);
+    for (std::size_t row = 0; row < side; ++row) {
+        rows += char(row + 1 == side);
+        rows += little_endian(length).substr(0, 2) + little_endian(~length).substr(0, 2);
+        rows += '\0' + std::string(length - 1, '\xff');
+    }
+    return png(side, side, 8, rows + std::string(4, '\0'));
+}
+
+TEST_F(ReadGltf, RefusesAFileThatItWouldHoldAgainAndAgain) {
+    folder.write("a.bin", std::string(1 << 20, '\0'));
+    Json gltf = triangle_gltf();
+    const Json buffer = {{"byteLength", 1 << 20}, {"uri", "a.bin"}};
+    for (int i = 0; i <= 256; ++i) gltf["buffers"].push_back(buffer);
+    EXPECT_EQ(folder.error_of(gltf), "");
+
+    gltf["buffers"].push_back(buffer);
+
+    EXPECT_EQ(folder.error_of(gltf), "room.gltf: glTF: File read error : " +
+                                         (folder.path() / "a.bin").string() + " : cannot be read");
+}
+
 TEST_F(ReadGltf, ReadsTheSameFromABinaryFile) {
     const Scene scene = folder.read("room.GLB", glb(triangle_gltf()));
 
@@ -599,22 +643,15 @@ INSTANTIATE_TEST_SUITE_P(
                     g["accessors"][0]["sparse"]["count"] = 2;
                 },
                 "accessors/0: ends at byte 4 of bufferView 1, which holds 2"},
+        BadGltf{"SparseValuesAgainAndAgain",
+                [](Json& g) {
+                    g = sparse_gltf(1);
+                    g["accessors"][0]["sparse"]["count"] = 4;
+                },
+                "accessors/0: has more sparse values than elements"},
         BadGltf{"ShortData", [](Json& g) { g["buffers"][0]["byteLength"] = 40; },
                 "buffers/0: its data URI does not hold 40 bytes"}),
     [](const auto& test) { return test.param.name; });
-
-/// A PNG of red, green and blue in eight bits, as far as its size.
-std::string png_of(std::size_t width, std::size_t height) {
-    const auto big_endian = [](std::size_t value) {
-        std::string bytes = little_endian(value);
-        std::reverse(bytes.begin(), bytes.end());
-        return bytes;
-    };
-    const std::string header = "IHDR" + big_endian(width) + big_endian(height) + "\x08\x02" +
-                               std::string(3 + 4, '\0');  // methods and a checksum
-    return "data:image/png;base64," + base64("\x89PNG\r\n\x1a\n" + big_endian(13) + header +
-                                             big_endian(0) + "IDAT" + big_endian(0));
-}
 
 /// Nodes that show one mesh, which shows all its corners again and again.
 void multiply(Json& gltf, std::size_t corners, std::size_t primitives, std::size_t nodes) {
@@ -632,9 +669,51 @@ INSTANTIATE_TEST_SUITE_P(
                     add_texture(g, {{"uri", png_of(16384, 16384)}});
                 },
                 "images/0: is 16384 x 16384 pixels, more than the 134217728 that are read"},
-        BadGltf{"CornersMultiplied", [](Json& g) { multiply(g, 3000, 1000, 1000); },
-                "nodes: show meshes of 3000003000 vertices and corners, more than the 100000000 "
-                "that are read"},
+        BadGltf{"ImageOf16BitsTooLarge",
+                [](Json& g) {
+                    add_texture(g, {{"uri", png_of(8192, 8193, 16)}});
+                },
+                "images/0: is 8192 x 8193 pixels, more than the 67108864 that are read"},
+        BadGltf{"ImagesTogetherTooLarge",
+                [](Json& g) {
+                    g["images"] = Json(9, {{"uri", png_of(16384, 8192)}});
+                    for (int i = 0; i < 9; ++i) {
+                        g["textures"].push_back({{"source", i}});
+                        g["materials"].push_back({{"emissiveTexture", {{"index", i}}}});
+                    }
+                },
+                "images: are 1207959552 pixels in all, more than the 1073774656 that are read of "
+                "513 bytes"},
+        BadGltf{"ImageOfAnotherFormat",
+                [](Json& g) {
+                    add_texture(g, {{"uri", "data:image/png;base64," + base64("P6 1 1 255\nabc")}});
+                },
+                "images/0: is neither PNG nor JPEG, or is damaged"},
+        BadGltf{"CornersMultiplied", [](Json& g) { multiply(g, 3000, 100, 100); },
+                "nodes: show meshes of 30000300 vertices and corners, more than the 10006036 that "
+                "are read of 6036 bytes"},
+        BadGltf{"NameOfAMegabyte",
+                [](Json& g) {
+                    g["meshes"][0]["name"] = std::string(1 << 20, 'x'), g["nodes"][0].erase("name");
+                },
+                "object \"" + std::string(200, 'x') +
+                    "...\": its name has 1048576 bytes, more than the 1000 that are read"},
+        BadGltf{"MaterialsNameOfAMegabyte",
+                [](Json& g) { g["materials"][0]["name"] = std::string(1 << 20, 'x'); },
+                "material \"" + std::string(200, 'x') +
+                    "...\": its name has 1048576 bytes, more than the 1000 that are read"},
+        BadGltf{"BandsNameOfAMegabyte",
+                [](Json& g) {
+                    g["materials"][0]["extras"]["reflectance"][std::string(1 << 20, 'x')] = 0.5;
+                },
+                "band \"" + std::string(200, 'x') +
+                    "...\": its name has 1048576 bytes, more than the 1000 that are read"},
+        BadGltf{"AttributeOfAMegabyte",
+                [](Json& g) {
+                    g["meshes"][0]["primitives"][0]["attributes"][std::string(1 << 20, 'x')] = 7;
+                },
+                "meshes/0/primitives/0/attributes/" + std::string(100, 'x') +
+                    ": 7 is out of range, the file holds 1 accessors"},
         BadGltf{"TooManyMembers",
                 [](Json& g) {
                     for (int i = 0; i <= 10000; ++i) g["extras"][std::to_string(i)] = i;
@@ -813,11 +892,9 @@ TEST_F(ReadGltf, FollowsLinksWithinTheFolder) {
 TEST_F(ReadGltf, DecodesAnImageOnce) {
     Json gltf = triangle_gltf({{"name", "a"}});
     constexpr int kTextures = 1000;
-    std::vector<unsigned char> ppm;  // stb reads it, and it is easily large
-    const std::string head = "P6 1000 1000 255\n";
-    ppm.assign(head.begin(), head.end());
-    ppm.resize(head.size() + 3'000'000, 255);
-    add_accessor(gltf, ppm, "SCALAR", 5121, 1);
+    const std::string image = white_png(1000);  // easily large
+    const std::vector<char> bytes(image.begin(), image.end());
+    add_accessor(gltf, bytes, "SCALAR", 5121, 1);
     gltf["images"] = Json::array();
     gltf["textures"] = Json::array();
     gltf["materials"] = Json::array();

@@ -123,6 +123,13 @@ TEST_F(ReadObj, WarnsOfAMissingLibraryAndTakesGrey) {
                             "stands in"));
 }
 
+TEST_F(ReadObj, ReadsALibraryOnceHoweverOftenItIsNamed) {
+    const Scene scene = folder.read(
+        "a.obj", "mtllib no.mtl ./no.mtl\nmtllib b/../no.mtl\n" + kSquare + "f 1 2 3\n");
+
+    EXPECT_EQ(scene.warnings.size(), 2u) << "one of the library, one of the face";
+}
+
 TEST_F(ReadObj, WarnsOfFacesWithoutMaterialAndTakesGrey) {
     folder.write("a.mtl", "Kd 0.9 0.9 0.9\n");
 
@@ -160,6 +167,8 @@ TEST_F(ReadObj, EscapesControlCharactersInNames) {
     EXPECT_EQ(scene.materials[0].name, "c\\x07");
     EXPECT_THAT(scene.warnings.at(0), HasSubstr("material \"c\\x07\""));
 }
+
+const std::string kTooLong = "...\": its name has 1001 bytes, more than the 1000 that are read";
 
 struct BadObj {
     const char* name;
@@ -202,6 +211,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadObj{"HugeCoordinate", "v 1e999 0 0\n", "bad.obj: line 1: \"1e999\" is out of range"},
         BadObj{"CoordinateIsText", "v 0 0 \x1b\n", "bad.obj: line 1: \"\\x1b\" is no number"},
         BadObj{"CoordinateMissing", "v 0 0\n", "bad.obj: line 1: a number is missing"},
+        BadObj{"LongObject", "o " + std::string(1001, 'x') + "\n",
+               "bad.obj: object \"" + std::string(200, 'x') + kTooLong},
+        BadObj{"LongGroup", "g " + std::string(500, 'x') + " " + std::string(500, 'x') + "\n",
+               "bad.obj: group \"" + std::string(200, 'x') + kTooLong},
+        BadObj{"LongMaterial", "usemtl " + std::string(1001, 'x') + "\n",
+               "bad.obj: material \"" + std::string(200, 'x') + kTooLong},
         BadObj{"LibraryOutside", "mtllib ../a.mtl\n",
                "bad.obj: mtllib \"../a.mtl\": must be a file in the scene's folder"},
         BadObj{"LibraryAbsolute", "mtllib /etc/passwd\n",

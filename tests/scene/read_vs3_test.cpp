@@ -211,6 +211,15 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"M 2 8 7 6 5 1 0 0.9 a", "masking surfaces (M) are not read"},
         Fault{"X 1 2 3", "coordinate transformations (X) are not read"}));
 
+TEST_F(ReadVs3, ANameOf1001BytesIsRefused) {
+    const std::string name(1001, 'x');
+
+    EXPECT_EQ(error_of(kVertices + "S 1 1 2 3 4 0 0 0.9 " + name + "\n"),
+              "room.vs3: surface \"" + name.substr(0, 200) +
+                  "...\": its name has 1001 bytes, more than the 1000 that are read");
+    EXPECT_EQ(error_of(kVertices + "S 1 1 2 3 4 0 0 0.9 " + name.substr(1) + "\n"), "");
+}
+
 TEST_F(ReadVs3, ASubsurfaceMustLieWithinItsBase) {
     EXPECT_EQ(error_of(kVertices + "S 1 5 6 7 8 0 0 0.9 rug\nS 2 1 2 3 4 1 0 0.9 floor\n"),
               "room.vs3: line 12: reaches beyond its base surface");
