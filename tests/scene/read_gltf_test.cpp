@@ -867,13 +867,16 @@ TEST_F(ReadGltf, NeverCrashesOnADamagedFile) {
 
 TEST_F(ReadGltf, RefusesWhatIsNotGltf) {
     EXPECT_EQ(folder.error_of("a.gltf", ""), "a.gltf: is empty");
-    EXPECT_THAT(folder.error_of("a.gltf", "hello"),
+    EXPECT_THAT(folder.error_of("a.gltf", "{hello"),
                 HasSubstr("a.gltf: JSON: parse error at line 1"));
     EXPECT_THAT(folder.error_of("a.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"x\": 1e999}"),
                 HasSubstr("a.gltf: JSON: number overflow"));
     EXPECT_THAT(folder.error_of("a.gltf", "{\"x\": NaN}"), HasSubstr("a.gltf: JSON: parse error"));
     EXPECT_EQ(folder.error_of("a.gltf", "[]"), "a.gltf: glTF: is not a JSON object");
-    EXPECT_THAT(folder.error_of("a.glb", "\x89PNG"), HasSubstr("a.glb: JSON: parse error"));
+    EXPECT_EQ(folder.error_of("a.gltf", "hello"),
+              "a.gltf: glTF: starts neither as GLB nor as JSON");
+    EXPECT_EQ(folder.error_of("a.glb", "\x89PNG"),
+              "a.glb: glTF: starts neither as GLB nor as JSON");
     EXPECT_THAT(folder.error_of(folder.path() / "no.glb"), HasSubstr("no.glb: does not exist"));
 }
 
