@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include "scene/gltf_file.h"
@@ -132,7 +131,10 @@ bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std
         *error += "cannot be read";
         return false;
     }
-    bytes->assign(std::istreambuf_iterator<char>(stream), {});
+    bytes->resize(std::filesystem::file_size(path));
+    stream.read(reinterpret_cast<char*>(bytes->data()),
+                static_cast<std::streamsize>(bytes->size()));
+    bytes->resize(static_cast<std::size_t>(stream.gcount()));
     return true;
 }
 
