@@ -34,6 +34,8 @@ MAPPED = (*QUICK[:-1], "0.03", "--salvo", "1", "--row-memory", "64", "--compute-
           "--max-shots", "2", "-o", "a.exr")
 FACTORS = ("formfactors", "scene.obj", "--quiet", "--resolution", "64", "-o", "f.csv")
 INPUTS = {"scene.obj", "scene.mtl"}
+# What a solve of a few shots says of its picture, whatever else happens.
+STOPPED_EARLY = re.compile(r"^warning: .* of the light is still to be shot")
 # What a user meets: a disk or quota that is full, a broken one, read-only, forbidden; a signal.
 ERRORS = {"open": (errno.EROFS, errno.EACCES, errno.ENOSPC, errno.EMFILE),
           "fopen64": (errno.EMFILE, errno.EACCES),
@@ -82,7 +84,9 @@ def run(arguments, folder, fail="", error="", callers="", device="", timeout=120
     traces = trace.read_text(errors="replace").splitlines() if traced else []
     calls.unlink(missing_ok=True)
     trace.unlink(missing_ok=True)
-    return Run(done.returncode, done.stderr, done.stdout,
+    told = "".join(line for line in done.stderr.splitlines(keepends=True)
+                   if not STOPPED_EARLY.search(line))
+    return Run(done.returncode, told, done.stdout,
                {name: int(count) for name, count, _ in lines},
                sum(int(failed) for _, _, failed in lines),
                [line.split(" ", 2) for line in traces])

@@ -135,7 +135,8 @@ class Injected(Faults):
     def test_memory_may_be_out(self):
         """The report's JSON asks for memory when it is taken apart, too."""
         arguments = (*faults.QUICK, "--report", "r.json")
-        allocations = self.run_whole(arguments).calls["new"]
+        # How many passes are sent off between two looks is the clock's to say.
+        allocations = min(self.run_whole(arguments).calls["new"] for _ in range(4)) - 10
         before = faults.files(self.folder)
         late = (allocations - i for i in range(3, 60, 10))
         for fail in ("new:1", "new:2000", "new:2000+", *(f"new:{number}" for number in late)):
@@ -161,7 +162,7 @@ class Vanished(Faults):
         arguments = [*faults.EVERYTHING, "--checkpoint-every", "1"]
         arguments = [a for a in arguments if a not in ("--snapshot-every", "5")]
         arguments.remove("--checkpoint-every")
-        moment = {"clFinish": 1, "clEnqueueReadBuffer": 30, "clEnqueueNDRangeKernel": 200}[name]
+        moment = {"clFinish": 2, "clEnqueueReadBuffer": 60, "clEnqueueNDRangeKernel": 400}[name]
 
         done = faults.run(arguments, self.folder, f"{name}:{moment}+")
 
