@@ -1,13 +1,12 @@
 #include "cli/formfactors_report.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "cli/memory.h"
 #include "cli/sha256.h"
 #include "cli/text.h"
 #include "lightmap/atomic_file.h"
@@ -68,12 +67,6 @@ Json outputs_json(const FormFactorsOptions& options) {
 Json enforce_json(const FactorsOutcome& outcome) {
     if (!outcome.before) return nullptr;
     return {{"before", json(outcome.before)}, {"after", json(outcome.after)}};
-}
-
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace

@@ -225,10 +225,7 @@ MemoryParts while_solving_and_writing(const Mesh& mesh, const ChartLayout& layou
 
 /// What reading and meshing have taken.
 MemoryParts so_far() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return {{"reading the scene and making its mesh",
-             static_cast<std::uint64_t>(usage.ru_maxrss) * 1024,
+    return {{"reading the scene and making its mesh", peak_memory_bytes(),
              "raise --patch-size, or make the scene or its textures smaller"}};
 }
 
@@ -304,6 +301,12 @@ std::string memory_text(const MemoryEstimate& estimate) {
         }
     return "about " + bytes_text(estimate.bytes()) + text + "; where kernels are compiled, " +
            bytes_text(estimate.compiler_bytes) + " more";
+}
+
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 std::uint64_t available_memory() {

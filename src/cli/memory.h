@@ -39,6 +39,9 @@ std::string memory_text(const MemoryEstimate& estimate);
 MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
                                const SolveOptions& options, const mp1map::DeviceSummary& device);
 
+/// Of this process so far, host and, where that is a CPU, device.
+std::uint64_t peak_memory_bytes();
+
 /// What processes may still take of the machine or, where that is less, of their control group,
 /// and what this one has already; the largest number there is where neither can be told.
 std::uint64_t available_memory();

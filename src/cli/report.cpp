@@ -1,10 +1,9 @@
 #include "cli/report.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/memory.h"
 #include "cli/sha256.h"
 #include "lightmap/atomic_file.h"
 #include "lightmap/part_names.h"
@@ -13,12 +12,6 @@ namespace hemirad {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
 
 Json input_json(const InputFaults& input) {
     return {{"welded", input.welded},           {"moved", input.moved},
