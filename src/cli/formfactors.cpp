@@ -10,7 +10,6 @@
 #include "cli/interrupts.h"
 #include "cli/near_names.h"
 #include "cli/row_display.h"
-#include "cli/stopwatch.h"
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -20,6 +19,7 @@
 #include "lightmap/atomic_file.h"
 #include "scene/printable.h"
 #include "scene/read_scene.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {

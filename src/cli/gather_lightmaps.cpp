@@ -5,9 +5,9 @@
 
 #include "cli/progress_display.h"
 #include "cli/row_display.h"
-#include "cli/stopwatch.h"
 #include "lightmap/patch_lookup.h"
 #include "solver/bands.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {

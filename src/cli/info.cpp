@@ -9,7 +9,6 @@
 #include "cli/memory.h"
 #include "cli/mesh_options.h"
 #include "cli/solve_options.h"
-#include "cli/stopwatch.h"
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -20,6 +19,7 @@
 #include "solver/accuracy.h"
 #include "solver/bands.h"
 #include "solver/solver.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {

@@ -19,7 +19,6 @@
 #include "cli/snapshots.h"
 #include "cli/solve_identity.h"
 #include "cli/solve_options.h"
-#include "cli/stopwatch.h"
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -30,6 +29,7 @@
 #include "solver/accuracy.h"
 #include "solver/bands.h"
 #include "solver/find_shooter_splits.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {

@@ -1,11 +1,11 @@
 #include "solver/forecast.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <map>
 
 #include "solver/solver.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {
@@ -30,10 +30,6 @@ struct Exchange {
     Table unshot;       // [band][group], parts of what the band emits
     Table reflectance;  // [band][group]
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Members of a group reflect alike, and emit or do not.
 std::vector<float> material_of(const PatchLight& light, std::size_t stride, std::uint32_t shooter) {
@@ -98,9 +94,9 @@ std::uint32_t let_shoot(Asked& asked, const std::vector<std::uint32_t>& shooters
 }
 
 double seconds_a_shot(Asked& asked, const std::vector<std::uint32_t>& shooters, Pass pass = shoot) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     const auto shots = let_shoot(asked, shooters, pass);
-    return seconds_since(start) / std::max(shots, 1u);
+    return stopwatch.seconds() / std::max(shots, 1u);
 }
 
 /// What each group's patches receive of one unit that a group's middle shoots.

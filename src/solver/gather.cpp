@@ -1,13 +1,13 @@
 #include "solver/gather.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 
 #include "solver/solver.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {
@@ -64,10 +64,6 @@ void gather_salvo(ShotPipeline& pipeline, std::uint32_t first, std::uint32_t end
     }
     pipeline.gather_irradiance();
     pipeline.add_up_irradiance();
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -127,7 +123,7 @@ std::optional<std::vector<std::vector<double>>> Gather::irradiance(
     std::span<const SurfacePoint> points, const PointProgress& on_progress) {
     std::vector<std::vector<double>> result(unit_.size(), std::vector<double>(points.size()));
     for (std::size_t first = 0; first < points.size();) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch stopwatch;
         const std::size_t count = std::min(batch_, points.size() - first);
         const auto gathered = look_from(points.subspan(first, count));
         for (std::size_t i = 0; i < count; ++i)
@@ -135,7 +131,7 @@ std::optional<std::vector<std::vector<double>>> Gather::irradiance(
                 result[band][first + i] = unit_[band] * double{gathered[i * unit_.size() + band]};
         first += count;
         if (!on_progress(first)) return std::nullopt;
-        const double seconds = std::max(seconds_since(start), 1e-9);
+        const double seconds = std::max(stopwatch.seconds(), 1e-9);
         const auto next =
             static_cast<std::size_t>(static_cast<double>(count) * kSecondsBetweenLooks / seconds);
         if (count == batch_)

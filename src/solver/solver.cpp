@@ -1,10 +1,10 @@
 #include "solver/solver.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "errors.h"
 #include "solver/assemble_solution.h"
+#include "solver/stopwatch.h"
 
 namespace hemirad {
 namespace {
@@ -23,10 +23,6 @@ constexpr std::uint32_t kFinestForSalvo = 2048;
 // The device counts them in 32 bits.
 constexpr std::uint64_t kMostShots = std::numeric_limits<std::uint32_t>::max();
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::vector<Shooter> shooters_of(const Mesh& mesh) {
     if (!mesh.shooters.empty()) return mesh.shooters;
     std::vector<Shooter> shooters;
@@ -35,19 +31,17 @@ std::vector<Shooter> shooters_of(const Mesh& mesh) {
     return shooters;
 }
 
-std::vector<std::uint32_t> by_patch(const Mesh& mesh, const std::vector<std::uint32_t>& shots_of) {
-    std::vector<std::uint32_t> result(mesh.patches.size());
-    const auto shooters = shooters_of(mesh);
-    for (std::size_t i = 0; i < shooters.size(); ++i)
-        std::fill_n(result.begin() + shooters[i].first_patch, shooters[i].patch_count, shots_of[i]);
-    return result;
-}
-
 std::vector<std::uint32_t> shooter_of_patches(const Mesh& mesh) {
     std::vector<std::uint32_t> result(mesh.patches.size());
     const auto shooters = shooters_of(mesh);
     for (std::uint32_t i = 0; i < shooters.size(); ++i)
         std::fill_n(result.begin() + shooters[i].first_patch, shooters[i].patch_count, i);
+    return result;
+}
+
+std::vector<std::uint32_t> by_patch(const Mesh& mesh, const std::vector<std::uint32_t>& shots_of) {
+    auto result = shooter_of_patches(mesh);
+    for (std::uint32_t& patch : result) patch = shots_of[patch];
     return result;
 }
 
@@ -174,8 +168,12 @@ ProgressiveSolver::ProgressiveSolver(const Mesh& mesh, const SolverSettings& set
       plan_(planned(mesh, settings, device.summary())),
       pipeline_(pipeline_for(mesh, plan_, settings, device)) {
     pipeline_.init_plane();
-    pipeline_.set_shot_limit(settings.max_shots, settings.max_shots);
-    // A shot at nothing: adds up the emitted flux and finds the first shooters.
+    find_first_shooters();
+}
+
+// By a shot at nothing, which adds up the flux that is unshot.
+void ProgressiveSolver::find_first_shooters() {
+    pipeline_.set_shot_limit(settings_.max_shots, settings_.max_shots);
     distribute_flux(pipeline_);
 }
 
@@ -257,7 +255,7 @@ std::uint64_t ProgressiveSolver::passes_to(std::uint64_t shots) const {
 }
 
 Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     std::uint64_t batch = 1;
     for (;;) {
         const device::Shot state = pipeline_.shot();
@@ -268,10 +266,10 @@ Stop ProgressiveSolver::solve(const std::function<bool(const Progress&)>& on_pro
         const std::uint64_t pause = next_pause(state.shots);
         pipeline_.set_shot_limit(pause, settings_.max_shots);
 
-        const double before = seconds_since(start);
+        const double before = stopwatch.seconds();
         const std::uint64_t passes = std::min(batch, passes_to(pause - state.shots));
         Progress progress = advance(passes);
-        progress.seconds = seconds_since(start);
+        progress.seconds = stopwatch.seconds();
         const double per_pass = (progress.seconds - before) / static_cast<double>(passes);
         batch = std::clamp<std::uint64_t>(
             static_cast<std::uint64_t>(kSecondsBetweenLooks / std::max(per_pass, 1e-9)), 1,
@@ -290,14 +288,13 @@ std::optional<Forecast> ProgressiveSolver::forecast(double least_seconds,
                     static_cast<std::uint32_t>(mesh_.shooter_count()), settings_.tolerance,
                     settings_.max_shots, least_seconds, go_on});
     pipeline_.acu().forget_seconds();
-    resume(pipeline_.state());
+    find_first_shooters();
     return result;
 }
 
 void ProgressiveSolver::resume(const SolveState& state) {
     pipeline_.set_state(state);
-    pipeline_.set_shot_limit(settings_.max_shots, settings_.max_shots);
-    distribute_flux(pipeline_);  // at nothing, as at the beginning
+    find_first_shooters();
 }
 
 SolveState ProgressiveSolver::state() {

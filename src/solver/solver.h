@@ -136,6 +136,7 @@ class ProgressiveSolver {
     std::map<std::string, std::pair<double, std::uint64_t>> kernel_seconds();
 
   private:
+    void find_first_shooters();
     Progress advance(std::uint64_t passes);
     std::uint64_t next_pause(std::uint64_t shots) const;
     std::uint64_t passes_to(std::uint64_t shots) const;  // that make so many for certain
