@@ -119,6 +119,7 @@ __kernel void estimate_form_factors(const __global Shot* salvo, const __global i
     const __global Level* end = level + stack_height[own.place];
     int_v owned = (int_v)0;
     for (; level < end; ++level) {
+        fetch_patches_ahead(corners, normals, stride, level + 1, end);
         Point corner[CORNERS];
         relative_corners(shot, corners, stride, level->patch, corner);
         const Point middle = middle_of(corner);

@@ -11,13 +11,17 @@
 #include "sum_form_factors.clh"
 
 // Diffuses patches of the tile's list to the array: one, a batch, or a level of the stacks at a
-// time (BROADCAST_PATCHES).
+// time (BROADCAST_PATCHES), of `left` that are still to come.
 static void broadcast(const __global Projection* projections,
                       const __global Rectangle* rectangles, const __global int* list, int count,
-                      int pe, __local Projection* batch, __local Rectangle* batch_rectangles) {
+                      int left, int pe, __local Projection* batch, __local Rectangle* batch_rectangles) {
     for (int k = pe; k < count; k += PE_COUNT) {
         batch[k] = projections[list[k]];
         batch_rectangles[k] = rectangles[list[k]];
+    }
+    for (int k = count + pe; k < min(count + BROADCAST_PATCHES, left); k += PE_COUNT) {
+        fetch_ahead(projections + list[k]);
+        fetch_ahead(rectangles + list[k]);
     }
 }
 
@@ -116,7 +120,8 @@ __kernel void project_patches(const __global Shot* salvo, const __global real_v*
     for (int first = begin; first < end; first += BROADCAST_PATCHES) {
         const int count = min(BROADCAST_PATCHES, end - first);
         barrier(CLK_LOCAL_MEM_FENCE);
-        broadcast(projections, rectangles, lists + first, count, pe, batch, batch_rectangles);
+        broadcast(projections, rectangles, lists + first, count, end - first, pe, batch,
+                  batch_rectangles);
         barrier(CLK_LOCAL_MEM_FENCE);
         for (int k = 0; k < count; ++k) {
             count_visit(&activity, batch_rectangles + k, tile, pe);

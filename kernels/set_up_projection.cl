@@ -140,6 +140,9 @@ __kernel void set_up_projection(const __global Shot* salvo, const __global int* 
     int count = 0;
     for (; level < end; ++level) {
         const int patch = level->patch;
+        const int slot = own.place * depth + count;
+        fetch_patches_ahead(corners, normals, stride, level + 1, end);
+        UNROLLED for (int k = 0; k < LANES; ++k) own_ahead(projections + slot + k);
         Point corner[CORNERS];
         relative_corners(shot, corners, stride, patch, corner);
         const Point normal = consecutive_points(normals, stride, patch);
@@ -156,7 +159,6 @@ __kernel void set_up_projection(const __global Shot* salvo, const __global int* 
 #else
         of.depth = depth_plane(shot, normal, height);
 #endif
-        const int slot = own.place * depth + count;
         count += store_projections(&of, patch, kept, projections + slot, rectangles + slot);
     }
     projection_count[own.place] = count;
