@@ -80,6 +80,8 @@ static int hidden_middles(const __global Shot* shot, const Patches* patches,
                           Point turned) {
     const real_v distance = sqrt(dot_v(turned, turned));
     const int_v column = proxel_before(turned.x, distance), row = proxel_before(turned.y, distance);
+    int_v place[4];
+    UNROLLED for (int k = 0; k < 4; ++k) place[k] = proxel_places(column + (k & 1), row + (k >> 1));
     int hidden = 0;
     for (int rest = asked; rest != 0; rest &= rest - 1) {
         const int lane = lowest_bit(rest), own = patch + lane;
@@ -87,8 +89,7 @@ static int hidden_middles(const __global Shot* shot, const Patches* patches,
                                    lane_of(middle.z, lane));
         int last = own;
         for (int k = 0; k < 4; ++k) {
-            const int owner = owners[proxel_place(int_lane_of(column, lane) + (k & 1),
-                                                  int_lane_of(row, lane) + (k >> 1))];
+            const int owner = owners[int_lane_of(place[k], lane)];
             if (owner == last || owner == own || owner >= patches->stride) continue;
             last = owner;
             if (!hides(shot, patches, owner, own, at)) continue;
