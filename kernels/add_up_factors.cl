@@ -1,8 +1,8 @@
 // First level of the sums over all patches that close a shot's analytic form factors: of the
 // factors, and of the doubt about them. block_sums: [station][block][visible, doubtful].
+#include "blocks.clh"
 #include "progress.clh"
 #include "shared.h"
-#include "sixteen_sums.clh"
 
 static float block_sum(const __global float* values, int block) {
     real_v sums[ACCUMULATORS];
@@ -21,7 +21,8 @@ __kernel void add_up_factors(const __global Shot* salvo, const __global float* a
     const int pe_count = get_global_size(0) / SALVO;
     const __global float* factors = all_factors + own.station * kFactorKinds * stride;
     __global float* block_sums = all_sums + 2 * own.station * block_count;
-    for (int block = pe; block < block_count; block += pe_count) {
+    const Blocks blocks = own_blocks(pe, pe_count, block_count);
+    for (int block = blocks.first; block < blocks.end; ++block) {
         block_sums[2 * block] = block_sum(factors + kVisibleFactor * stride, block);
         block_sums[2 * block + 1] = block_sum(factors + kDoubtfulFactor * stride, block);
     }

@@ -2,9 +2,9 @@
 // E = sum over patches of F B: a form factor from a point to a patch is what of the patch's radiosity
 // arrives there. The form factors are spent.
 // radiosity: [band][patch]; block_sums: [station][band][block].
+#include "blocks.clh"
 #include "form_factors.clh"
 #include "progress.clh"
-#include "sixteen_sums.clh"
 
 // Of a block, closed; whether there are any but 0.
 static bool take_block(const __global Shot* shot, __global int* proxel_count, int disk_proxels,
@@ -45,7 +45,8 @@ __kernel void gather_irradiance(const __global Shot* salvo, __global int* proxel
     __global int* proxel_count = proxel_counts + own.station * (stride + kCountsGap);
     __global float* factors = all_factors + own.station * kFactorKinds * stride;
     __global float* block_sums = all_sums + own.station * band_count * block_count;
-    for (int block = pe; block < block_count; block += pe_count) {
+    const Blocks blocks = own_blocks(pe, pe_count, block_count);
+    for (int block = blocks.first; block < blocks.end; ++block) {
         real_v form_factor[BLOCK_VECTORS];
         const bool any = take_block(salvo + own.member, proxel_count, disk_proxels, factors, stride,
                                     block, form_factor);

@@ -70,8 +70,8 @@ __kernel void update_radiosity(const __global Shot* salvo, const __global float*
     if (!is_shooting(salvo)) return;
     const int size = salvo_size(salvo), shooters = shooter_count(salvo);
     int owned[SALVO] = {0};
-    for (int block = get_global_id(0); block < stride / kReduceBlock;
-         block += get_global_size(0))
+    const Blocks blocks = own_blocks(get_global_id(0), get_global_size(0), stride / kReduceBlock);
+    for (int block = blocks.first; block < blocks.end; ++block)
         for (int step = 0; step < BLOCK_VECTORS; ++step) {
             const int patch = block * kReduceBlock + step * LANES;
             real_v form_factor[SALVO];

@@ -104,8 +104,9 @@ __kernel void update_unshot(const __global Shot* salvo, const __global float* sh
                             __global BlockSummary* summaries, __global float* block_unshot) {
     if (!is_shooting(salvo)) return;
     const int size = shooter_count(salvo);
-    for (int block = get_global_id(0); block < shooter_stride / kReduceBlock;
-         block += get_global_size(0)) {
+    const Blocks blocks =
+        own_blocks(get_global_id(0), get_global_size(0), shooter_stride / kReduceBlock);
+    for (int block = blocks.first; block < blocks.end; ++block) {
         Reduction reduction;
         begin_reduction(salvo, size, block, &reduction);
         for (int step = 0; step < BLOCK_VECTORS; ++step) {
