@@ -1,9 +1,9 @@
 #include "cli/summary.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "cli/text.h"
 #include "scene/bounds.h"
@@ -68,9 +68,9 @@ void print_kernels(std::ostream& out, const Outcome& outcome) {
 
 std::vector<std::string> warnings_of(const Scene& scene, const Mesh& mesh) {
     auto warnings = scene.warnings;
+    std::set<std::string> told(warnings.begin(), warnings.end());
     for (const auto& warning : mesh.warnings)
-        if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
-            warnings.push_back(warning);
+        if (told.insert(warning).second) warnings.push_back(warning);
     return warnings;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -195,20 +196,22 @@ class Mesher {
     }
 
     void add_triangles(const Flat& flat, std::uint32_t surface) {
+        const auto corner_of = corners_of(flat.face);
         for (const auto piece : faces_.pieces(flat))
             for (std::size_t i = 1; i + 1 < piece.size(); ++i)
                 mesh_.face_triangles.push_back(
                     {flat.face,
                      surface,
-                     {corner_at(flat.face, piece[0]), corner_at(flat.face, piece[i]),
-                      corner_at(flat.face, piece[i + 1])}});
+                     {corner_of.at(piece[0]), corner_of.at(piece[i]), corner_of.at(piece[i + 1])}});
     }
 
-    std::uint32_t corner_at(std::uint32_t face, std::uint32_t vertex) const {
+    /// By vertex, the first corner of the face that is there.
+    std::map<std::uint32_t, std::uint32_t> corners_of(std::uint32_t face) const {
+        std::map<std::uint32_t, std::uint32_t> corner_of;
         const auto& corners = scene_.faces[face].vertices;
-        const auto corner = std::ranges::find(
-            corners, vertex, [&](std::uint32_t position) { return vertex_of_position_[position]; });
-        return static_cast<std::uint32_t>(corner - corners.begin());
+        for (std::uint32_t i = 0; i < corners.size(); ++i)
+            corner_of.try_emplace(vertex_of_position_[corners[i]], i);
+        return corner_of;
     }
 
     void add_backs() {
@@ -249,7 +252,8 @@ class Mesher {
         constexpr double kUncut = std::numeric_limits<double>::infinity();
         const Surface cell =
             lay_grid(scene_, faces_, group, vertices_.positions(), precision_, kUncut);
-        CutSurface back = turn_over(cut(group, {cell, {cell}}));
+        CutSurface back =
+            turn_over(cut(group, {.patches = cell, .elements = {cell}, .has_fragments = false}));
         back.surface.material = static_cast<std::uint32_t>(mesh_.materials.size() - 1);
         back.surface.has_chart = false;
         return back;
@@ -261,6 +265,7 @@ class Mesher {
         const auto [elements, shooters] = depths_for(grids.elements.back());
         grids.depths = mirrored(elements, columns);
         grids.shooter_depths = mirrored(shooters, columns);
+        grids.has_fragments = false;
         return turn_over(cut(group, std::move(grids)));
     }
 

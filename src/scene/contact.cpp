@@ -2,8 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace hemirad::meshing {
+namespace {
+
+// Twice the slack, so that rounding loses none.
+bool reaches_line_of(const Contact& contact, const Polygon& polygon, double slack) {
+    const glm::dvec2 along = contact.to - contact.from, across(-along.y, along.x);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Corner& corner : polygon) {
+        const double beyond = glm::dot(across, corner.at - contact.from);
+        low = std::min(low, beyond);
+        high = std::max(high, beyond);
+    }
+    const double most = 2 * slack * glm::length(along);
+    return low <= most && high >= -most;
+}
+
+}  // namespace
 
 double distance(const Contact& contact, const glm::dvec2& at) {
     const glm::dvec2 along = contact.to - contact.from;
@@ -25,6 +43,15 @@ bool runs_along(const Contact& contact, const glm::dvec2& a, const glm::dvec2& b
         return std::abs(from.y + (to.y - from.y) * (t - from.x) / (to.x - from.x));
     };
     return height(begin) <= slack && height(end) <= slack;
+}
+
+std::vector<Contact> about(const Polygon& polygon, std::span<const Contact> contacts,
+                           double slack) {
+    std::vector<Contact> near;
+    std::ranges::copy_if(contacts, std::back_inserter(near), [&](const Contact& contact) {
+        return reaches_line_of(contact, polygon, slack);
+    });
+    return near;
 }
 
 }  // namespace hemirad::meshing

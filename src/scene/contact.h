@@ -2,7 +2,10 @@
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
+
+#include "scene/polygon.h"
 
 namespace hemirad::meshing {
 
@@ -19,5 +22,8 @@ double distance(const Contact& contact, const glm::dvec2& at);
 
 /// Whether the contact runs along the edge from a to b, within `slack`, for more than that.
 bool runs_along(const Contact& contact, const glm::dvec2& a, const glm::dvec2& b, double slack);
+
+/// Those of the contacts whose lines the polygon reaches: no other comes within `slack` of it.
+std::vector<Contact> about(const Polygon& polygon, std::span<const Contact> contacts, double slack);
 
 }  // namespace hemirad::meshing

@@ -35,16 +35,26 @@ std::vector<MergedPiece> unmerged(Cell cell, double precision) {
     return pieces;
 }
 
+// Past so many elements of one piece each counts as within it: to clip them all against it takes
+// the square of its corners.
+constexpr std::size_t kMostClipped = 64;
+
+std::vector<double> shares_of(const CellPiece& piece, std::span<const Polygon> elements,
+                              bool is_alone) {
+    if (elements.size() == 1) return {1.0};
+    std::vector<double> shares;
+    for (const Polygon& element : elements)
+        shares.push_back(is_alone && piece.polygon.size() > kMostClipped
+                             ? area(element)
+                             : common_area(piece.polygon, element));
+    return shares;
+}
+
 // Shares a piece's area out to the elements that its merged polygon was cut into. Shares add up to
 // the whole piece, also where straight corners that were left out had moved the outline a little.
-void share_out(const CellPiece& piece, std::span<const Polygon> elements, std::uint32_t first_patch,
-               std::vector<Fragment>& fragments) {
-    std::vector<double> shares{1.0};
-    if (elements.size() > 1) {
-        shares.clear();
-        for (const Polygon& element : elements)
-            shares.push_back(common_area(piece.polygon, element));
-    }
+void share_out(const CellPiece& piece, std::span<const Polygon> elements, bool is_alone,
+               std::uint32_t first_patch, std::vector<Fragment>& fragments) {
+    const auto shares = shares_of(piece, elements, is_alone);
     const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
     if (total <= 0) return;
     const double whole = area(piece.polygon);
@@ -91,9 +101,10 @@ class SurfaceCutter {
         for (const Polygon& part :
              cut_along_contacts(merged.polygon, contacts_here_, slack_, precision_, splitter_))
             add_part({cell.front().cell, 0, part});
-        if (elements_.empty()) return;
+        if (elements_.empty() || !grids_.has_fragments) return;
         for (const std::uint32_t piece : merged.pieces)
-            share_out(cell[piece], elements_, first_patch, cut_.fragments);
+            share_out(cell[piece], elements_, merged.pieces.size() == 1, first_patch,
+                      cut_.fragments);
     }
 
     void add_part(const CellPiece& part) {

@@ -33,6 +33,7 @@ struct Grids {
     /// one before, and from the grid that equals elements[0] on as fine as the elements.
     std::vector<Surface> split_shooters = {};
     Depths shooter_depths = {};
+    bool has_fragments = true;  ///< a surface that is turned over needs none
 };
 
 enum class Merging { in_cells, none };

@@ -1,6 +1,8 @@
 #include "scene/find_sides.h"
 
 #include <algorithm>
+#include <bitset>
+#include <optional>
 #include <utility>
 
 #include "scene/disjoint_sets.h"
@@ -66,8 +68,6 @@ std::vector<Presence> presences(const std::vector<SidePiece>& pieces, const Surf
     return present;
 }
 
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
 // The region that is in the most blocks: that of all which no contact surrounds.
 std::uint32_t most_common(std::vector<Presence> present) {
     std::ranges::sort(present, {}, &Presence::region);
@@ -80,45 +80,87 @@ std::uint32_t most_common(std::vector<Presence> present) {
     return most;
 }
 
-// Both ways.
-Pairs near_each_other(const std::vector<Presence>& present) {
-    const std::uint32_t common = most_common(present);
-    Pairs pairs;
-    for (const auto& [at_row, at_column, region] : present) {
-        if (region == common) continue;
-        for (std::int64_t row = at_row - kReach; row <= at_row + kReach; ++row) {
-            auto near = std::ranges::lower_bound(present, Presence{row, at_column - kReach, 0});
-            for (; near != present.end() && near->row == row && near->column <= at_column + kReach;
-                 ++near)
-                if (near->region != region)
-                    pairs.insert(pairs.end(), {{region, near->region}, {near->region, region}});
-        }
-    }
-    std::ranges::sort(pairs);
-    const auto repeated = std::ranges::unique(pairs);
-    pairs.erase(repeated.begin(), repeated.end());
-    return pairs;
-}
+/// The last side stands for all beyond.
+constexpr std::uint8_t kLastSide = 255;
+using SidesTaken = std::bitset<kLastSide>;
 
-// The lowest that no lower region near it has; the last stands for all beyond.
-std::uint8_t free_side(std::uint32_t region, const Pairs& pairs,
-                       const std::vector<std::uint8_t>& sides) {
-    constexpr std::uint8_t kMost = 255;
-    std::set<std::uint8_t> taken;
-    for (const auto& [here, there] : std::ranges::equal_range(
-             pairs, region, {}, &std::pair<std::uint32_t, std::uint32_t>::first))
-        if (there < here) taken.insert(sides[there]);
+/// What regions have taken in a block so far, all but the most common.
+struct Block {
+    std::int64_t row, column;
+    bool holds_common = false;
+    SidesTaken taken = {};
+
+    auto place() const { return std::pair(row, column); }
+};
+
+std::uint8_t free_side(const SidesTaken& taken) {
     std::uint8_t side = 0;
-    while (side < kMost && taken.contains(side)) ++side;
+    while (side < kLastSide && taken.test(side)) ++side;
     return side;
 }
+
+/// Gives regions, lowest first, the lowest side that none near them has. Each looks at the blocks
+/// about its own, however many regions these hold; the most common one, which is about everywhere,
+/// is looked for instead.
+class SideChooser {
+  public:
+    explicit SideChooser(std::vector<Presence> present)
+        : common_(most_common(present)), present_(std::move(present)) {
+        for (const auto& [row, column, region] : present_) {
+            if (blocks_.empty() || blocks_.back().place() != std::pair(row, column))
+                blocks_.push_back({row, column});
+            blocks_.back().holds_common |= region == common_;
+        }
+        std::ranges::stable_sort(present_, {}, &Presence::region);
+    }
+
+    std::uint8_t choose(std::uint32_t region) {
+        if (region == common_) return *(common_side_ = free_side(taken_about_common_));
+        const auto own = std::ranges::equal_range(present_, region, {}, &Presence::region);
+        SidesTaken taken;
+        bool meets_common = false;
+        for (const Presence& at : own)
+            for_each_block_about(at, [&](const Block& block) {
+                taken |= block.taken;
+                meets_common |= block.holds_common;
+            });
+        if (meets_common && common_side_) take(*common_side_, taken);
+        const std::uint8_t side = free_side(taken);
+        for (const Presence& at : own) take(side, find(at.row, at.column)->taken);
+        if (meets_common) take(side, taken_about_common_);
+        return side;
+    }
+
+  private:
+    static void take(std::uint8_t side, SidesTaken& taken) {
+        if (side < kLastSide) taken.set(side);
+    }
+    std::vector<Block>::iterator find(std::int64_t row, std::int64_t column) {
+        return std::ranges::lower_bound(blocks_, std::pair(row, column), {}, &Block::place);
+    }
+    template <class Visit>
+    void for_each_block_about(const Presence& at, Visit visit) {
+        for (std::int64_t row = at.row - kReach; row <= at.row + kReach; ++row)
+            for (auto block = find(row, at.column - kReach);
+                 block != blocks_.end() && block->row == row && block->column <= at.column + kReach;
+                 ++block)
+                visit(*block);
+    }
+
+    std::uint32_t common_;
+    std::vector<Presence> present_;  ///< by region
+    std::vector<Block> blocks_;      ///< by place
+    SidesTaken taken_about_common_;
+    std::optional<std::uint8_t> common_side_;
+};
 
 }  // namespace
 
 void ContactMarks::add(const Polygon& piece, const std::vector<Contact>& contacts, double slack) {
+    const auto near = about(piece, contacts, slack);
     for (std::size_t i = 0; i < piece.size(); ++i) {
         const Corner &a = piece[i], &b = piece[(i + 1) % piece.size()];
-        for (const Contact& contact : contacts) {
+        for (const Contact& contact : near) {
             if (distance(contact, a.at) <= slack) vertices_.insert(a.vertex);
             if (runs_along(contact, a.at, b.at, slack))
                 edges_.insert(std::minmax(a.vertex, b.vertex));
@@ -135,11 +177,11 @@ std::vector<std::uint8_t> find_sides(const std::vector<SidePiece>& pieces, const
     DisjointSets regions(pieces.size());
     join_over_vertices(pieces, marks, regions);
     join_over_edges(pieces, marks, regions);
-    const Pairs pairs = near_each_other(presences(pieces, surface, regions));
+    SideChooser sides(presences(pieces, surface, regions));
     std::vector<std::uint8_t> of_piece(pieces.size(), 0), of_patch;
     for (std::uint32_t p = 0; p < pieces.size(); ++p) {
         const std::uint32_t region = regions.find(p);  // its lowest piece
-        of_piece[p] = region == p ? free_side(region, pairs, of_piece) : of_piece[region];
+        of_piece[p] = region == p ? sides.choose(region) : of_piece[region];
         of_patch.insert(of_patch.end(), pieces[p].patch_count, of_piece[p]);
     }
     if (std::ranges::all_of(of_patch, [](std::uint8_t side) { return side == 0; }))

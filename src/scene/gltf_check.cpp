@@ -78,6 +78,9 @@ constexpr auto kKnownExtensions = std::to_array<std::string_view>({
     "KHR_mesh_quantization",
 });
 
+/// A material is held in three thousand bytes; the least that has a colour takes 64 in the file.
+constexpr std::size_t kFewMaterials = 10'000, kBytesAMaterial = 64;
+
 /// Bytes of an object's key in the path that messages show.
 constexpr std::size_t kLongestKey = 100;
 
@@ -204,6 +207,16 @@ void check_primitives(const InputFile& file, const Json& json) {
     });
 }
 
+void check_materials(const InputFile& file, const Json& json) {
+    const auto materials = json.find("materials");
+    const std::size_t count = materials == json.end() ? 0 : materials->size();
+    const std::size_t most = kFewMaterials + file.bytes.size() / kBytesAMaterial;
+    if (count <= most) return;
+    fail(file, "materials",
+         "are " + std::to_string(count) + ", more than the " + std::to_string(most) +
+             " that are read of " + std::to_string(file.bytes.size()) + " bytes");
+}
+
 void check_extensions(const InputFile& file, const Json& json) {
     for_each(json, "extensionsRequired/*", [&](const std::string& path, const Json& value) {
         if (!value.is_string()) fail(file, path, "is not a string");
@@ -241,6 +254,7 @@ void check_sections(const InputFile& file, const Json& json) {
 void check_gltf(const InputFile& file, const Json& json) {
     check_sections(file, json);
     check_extensions(file, json);
+    check_materials(file, json);
     check_primitives(file, json);
     check_references(file, json);
     check_numbers(file, json);

@@ -10,8 +10,12 @@ namespace {
 
 // Deeper than any exporter nests; tinygltf descends into extras by recursion.
 constexpr std::size_t kDeepestNesting = 200;
-// More than exporters write; an ordered object compares a new member with all before it.
+// More than exporters write; an ordered object compares a new member with all before it, which
+// takes a second for the largest, and for as many compared in all.
 constexpr std::size_t kMostMembers = 10'000;
+constexpr std::size_t kMostCompared = kMostMembers * kMostMembers, kComparedAByte = 20;
+// An object is held twice, a node in a thousand bytes: a small one of a mesh has 12 in the file.
+constexpr std::size_t kFewObjects = 10'000, kBytesAnObject = 12;
 constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;  // glTF 2.0, sec. 4.4
 
 std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
@@ -44,24 +48,63 @@ std::string_view json_text(const InputFile& file) {
     return std::string_view(file.bytes).substr(begin, length);
 }
 
+/// What a JSON text opens and how much it holds, as it is walked.
+struct Shape {
+    std::vector<std::size_t> commas;  ///< in what is open
+    std::vector<bool> is_object;
+    std::size_t objects = 0;
+    std::size_t compared = 0;  ///< squares of closed objects' members
+
+    void open(bool object) {
+        commas.push_back(0);
+        is_object.push_back(object);
+        objects += object;
+    }
+    void close() {
+        if (is_object.back()) compared += commas.back() * commas.back();
+        commas.pop_back();
+        is_object.pop_back();
+    }
+};
+
+void check_members(const InputFile& file, const Shape& shape) {
+    if (!shape.is_object.back() || shape.commas.back() < kMostMembers) return;
+    fail(file, "JSON", "an object holds more than " + std::to_string(kMostMembers) + " members");
+}
+
+void check_amounts(const InputFile& file, const Shape& shape, std::size_t bytes) {
+    const std::size_t objects = kFewObjects + bytes / kBytesAnObject;
+    const std::size_t compared = kMostCompared + kComparedAByte * bytes;
+    const std::string of_bytes = " that are read of " + std::to_string(bytes) + " bytes";
+    if (shape.objects > objects)
+        fail(file, "JSON",
+             "holds " + std::to_string(shape.objects) + " objects, more than the " +
+                 std::to_string(objects) + of_bytes);
+    if (shape.compared > compared)
+        fail(file, "JSON",
+             "its objects hold too many members: squared and added up " +
+                 std::to_string(shape.compared) + ", more than the " + std::to_string(compared) +
+                 of_bytes);
+}
+
 /// Brackets and commas that do not stand in a string.
 void check_shape(const InputFile& file, std::string_view text) {
-    std::vector<std::size_t> commas;  // in what is open
-    std::vector<bool> is_object;
+    Shape shape;
     bool in_string = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (in_string && c == '\\') ++i;
         if (c == '"') in_string = !in_string;
         if (in_string) continue;
-        if (c == '{' || c == '[') commas.push_back(0), is_object.push_back(c == '{');
-        if (commas.size() > kDeepestNesting) fail(file, "JSON", "is nested too deeply");
-        if (commas.empty()) continue;
-        if (c == '}' || c == ']') commas.pop_back(), is_object.pop_back();
-        if (c == ',' && is_object.back() && ++commas.back() >= kMostMembers)
-            fail(file, "JSON",
-                 "an object holds more than " + std::to_string(kMostMembers) + " members");
+        if (c == '{' || c == '[') shape.open(c == '{');
+        if (shape.commas.size() > kDeepestNesting) fail(file, "JSON", "is nested too deeply");
+        if (shape.commas.empty()) continue;
+        if (c == '}' || c == ']') shape.close();
+        if (c != ',' || shape.commas.empty()) continue;
+        ++shape.commas.back();
+        check_members(file, shape);
     }
+    check_amounts(file, shape, text.size());
 }
 
 // tinygltf quotes whole data URIs.

@@ -28,10 +28,12 @@ Seams find_seams(std::span<const CellPiece> cell, const Barriers& barriers) {
     std::set<std::uint64_t> barred;
     for (std::uint32_t p = 0; p < cell.size(); ++p) {
         const Polygon& polygon = cell[p].polygon;
+        const auto contacts = about(polygon, barriers.contacts, barriers.slack);
+        const Barriers near{contacts, barriers.slack};
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
             edges.emplace_back(a.vertex, b.vertex, p);
-            if (barriers.part(a, b)) barred.insert(edges.back().key);
+            if (near.part(a, b)) barred.insert(edges.back().key);
         }
     }
     sort_edges(edges);

@@ -11,6 +11,11 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 
+/// To cut a face that is not convex into triangles takes the square of its corners: some seconds
+/// for the largest, and for all faces together.
+constexpr std::size_t kMostCorners = 10'000;
+constexpr std::size_t kMostSquares = 3 * kMostCorners * kMostCorners, kSquaresAByte = 100;
+
 std::string_view next_word(std::string_view& line) {
     const auto begin = line.find_first_not_of(kBlanks);
     if (begin == std::string_view::npos) return line = {};
@@ -61,13 +66,27 @@ bool is_continued(std::string_view line) {
     return !line.empty() && line.back() == '\\' && line[first] != '#';
 }
 
-void check_face(const InputLine& place, std::string_view rest) {
-    int corners = 0;
+/// Returns how many corners it has.
+std::size_t check_face(const InputLine& place, std::string_view rest) {
+    std::size_t corners = 0;
     for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
         check_corner(place, word);
         ++corners;
     }
     if (corners < 3) place.fail("a face needs three corners");
+    if (corners > kMostCorners)
+        place.fail("a face has " + std::to_string(corners) + " corners, more than the " +
+                   std::to_string(kMostCorners) + " that are read");
+    return corners;
+}
+
+void check_squares(const InputFile& file, std::size_t squares, std::size_t bytes) {
+    const std::size_t most = kMostSquares + kSquaresAByte * bytes;
+    if (squares <= most) return;
+    fail(file, "OBJ",
+         "its faces have too many corners: squared and added up " + std::to_string(squares) +
+             ", more than the " + std::to_string(most) + " that are read of " +
+             std::to_string(bytes) + " bytes");
 }
 
 }  // namespace
@@ -96,14 +115,17 @@ std::string unfold_lines(const std::string& bytes) {
 ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
     ObjNumbers numbers;
     TextQuantum quantum;
+    std::size_t squares = 0;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
         const InputLine place{file, number};
         if (keyword == "v") numbers.positions.push_back(read_vector(place, line, quantum));
         if (keyword != "f") return;
-        check_face(place, line);
+        const std::size_t corners = check_face(place, line);
+        squares += corners * corners;
         numbers.face_lines.push_back(number);
     });
+    check_squares(file, squares, text.size());
     numbers.quantum = quantum.value();
     return numbers;
 }

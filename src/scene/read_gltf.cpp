@@ -27,6 +27,7 @@ struct Builder {
     const GltfFile& gltf;
     Scene scene = {};
     std::optional<std::uint32_t> default_material = {};
+    std::map<int, std::vector<std::size_t>> primitives = {};  ///< of meshes, those with faces
 };
 
 std::string node_path(std::size_t node) { return "nodes/" + std::to_string(node); }
@@ -364,6 +365,21 @@ void add_faces(Builder& builder, const PlacedPrimitive& primitive) {
     }
 }
 
+std::string primitive_path(int mesh, std::size_t primitive) {
+    return "meshes/" + std::to_string(mesh) + "/primitives/" + std::to_string(primitive);
+}
+
+/// The mesh's primitives that have faces. The others are told of once, however many nodes show
+/// them.
+const std::vector<std::size_t>& primitives_of(Builder& builder, int mesh) {
+    const auto [entry, is_new] = builder.primitives.try_emplace(mesh);
+    if (!is_new) return entry->second;
+    const auto& all = builder.gltf.model.meshes[static_cast<std::size_t>(mesh)].primitives;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (has_faces(builder, primitive_path(mesh, i), all[i])) entry->second.push_back(i);
+    return entry->second;
+}
+
 void add_mesh(Builder& builder, const PlacedNode& node) {
     const auto& source = builder.gltf.model.nodes[node.node];
     if (source.mesh < 0) return;
@@ -373,15 +389,13 @@ void add_mesh(Builder& builder, const PlacedNode& node) {
     const auto& primitives =
         builder.gltf.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
     std::map<int, VertexRange> ranges;  // primitives of a mesh often share their positions
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        const std::string path =
-            "meshes/" + std::to_string(source.mesh) + "/primitives/" + std::to_string(i);
-        if (!has_faces(builder, path, primitives[i])) continue;
+    for (const std::size_t i : primitives_of(builder, source.mesh)) {
         const int accessor = primitives[i].attributes.at("POSITION");
         if (!ranges.contains(accessor)) {
             ranges[accessor] = add_positions(builder, node, accessor);
         }
-        add_faces(builder, {primitives[i], path, object, ranges[accessor], mirrored});
+        add_faces(builder, {primitives[i], primitive_path(source.mesh, i), object, ranges[accessor],
+                            mirrored});
     }
 }
 

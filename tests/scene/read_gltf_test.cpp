@@ -126,6 +126,14 @@ TEST_F(ReadGltf, ReadsAnExternalBufferBesideTheFile) {
     EXPECT_EQ(scene.positions.at(2), glm::dvec3(0, 5, 0));
 }
 
+/// As many as a file may hold that has little else.
+TEST_F(ReadGltf, TakesManySmallNodes) {
+    Json gltf = triangle_gltf();
+    gltf["nodes"] = Json(30000, {{"mesh", 0}});
+
+    EXPECT_EQ(folder.read(gltf).faces.size(), 30000u);
+}
+
 // --- Nodes ---------------------------------------------------------------------------------------
 
 TEST_F(ReadGltf, NamesObjectsAfterNodeThenMeshThenNumber) {
@@ -719,6 +727,20 @@ INSTANTIATE_TEST_SUITE_P(
                     for (int i = 0; i <= 10000; ++i) g["extras"][std::to_string(i)] = i;
                 },
                 "JSON: an object holds more than 10000 members"},
+        BadGltf{"TooManyMembersTogether",
+                [](Json& g) {
+                    for (int i = 0; i < 8000; ++i) g["extras"][std::to_string(i)] = 0;
+                    g["asset"]["extras"] = g["extras"];
+                },
+                "JSON: its objects hold too many members: squared and added up 127968066, more "
+                "than the 102844580 that are read of 142229 bytes"},
+        BadGltf{"TooManyObjects", [](Json& g) { g["extras"] = Json(20000, Json::object()); },
+                "JSON: holds 20010 objects, more than the 15036 that are read of 60438 bytes"},
+        BadGltf{"TooManyMaterials",
+                [](Json& g) {
+                    g["materials"] = Json(15000, {{"name", "a"}});
+                },
+                "materials: are 15000, more than the 13053 that are read of 195411 bytes"},
         BadGltf{"TooManyBands",
                 [](Json& g) {
                     for (int i = 0; i <= 1000; ++i)
@@ -889,6 +911,20 @@ TEST_F(ReadGltf, FollowsLinksWithinTheFolder) {
     std::filesystem::create_symlink("a.bin", folder.path() / "store/room.bin");
 
     EXPECT_EQ(folder.error_of(gltf), "");
+}
+
+TEST_F(ReadGltf, TellsOnceOfAPrimitiveWithoutFacesHoweverManyNodesShowIt) {
+    Json gltf = triangle_gltf();
+    auto& primitives = gltf["meshes"][0]["primitives"];
+    primitives.push_back(primitives[0]);
+    primitives[0]["mode"] = 0;
+    gltf["nodes"] = Json(3, gltf["nodes"][0]);
+
+    const Scene scene = folder.read(gltf);
+
+    EXPECT_EQ(scene.faces.size(), 3u);
+    EXPECT_THAT(scene.warnings, ElementsAre("room.gltf: meshes/0/primitives/0: points and lines "
+                                            "have no area, skipped"));
 }
 
 /// Each of them anew would take minutes.

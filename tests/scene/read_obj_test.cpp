@@ -170,6 +170,12 @@ TEST_F(ReadObj, EscapesControlCharactersInNames) {
 
 const std::string kTooLong = "...\": its name has 1001 bytes, more than the 1000 that are read";
 
+std::string face_of(int corners) {
+    std::string line = "f";
+    for (int i = 0; i < corners; ++i) line += " 1";
+    return line + '\n';
+}
+
 struct BadObj {
     const char* name;
     std::string text, error;
@@ -205,6 +211,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadObj{"IndexIsFraction", kSquare + "f 1 2 3.5\n", "bad.obj: line 5: \"3.5\" is no number"},
         BadObj{"FourIndices", kSquare + "f 1 2 3/1/1/1\n",
                "bad.obj: line 5: a corner has more than three indices"},
+        BadObj{"TooManyCorners", kSquare + face_of(10001),
+               "bad.obj: line 5: a face has 10001 corners, more than the 10000 that are read"},
+        BadObj{"TooManyCornersTogether",
+               kSquare + face_of(10000) + face_of(10000) + face_of(10000) + face_of(8000),
+               "bad.obj: OBJ: its faces have too many corners: squared and added up 364000000, "
+               "more than the 307604000 that are read of 76040 bytes"},
         BadObj{"TwoCorners", kSquare + "f 1 2\n", "bad.obj: line 5: a face needs three corners"},
         BadObj{"NanCoordinate", "v 0 0 nan\n", "bad.obj: line 1: \"nan\" is not finite"},
         BadObj{"InfiniteCoordinate", "v 0 -inf 0\n", "bad.obj: line 1: \"-inf\" is not finite"},
