@@ -6,6 +6,7 @@ import struct
 import unittest
 
 import scenes
+from exr import Exr
 
 QUICK = ("--resolution", "64", "--patch-size", "0.25", "-q")
 
@@ -67,6 +68,34 @@ class Atlases(scenes.InFolder):
         report = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         self.assertEqual(["out.exr", "out.png", "out.1.exr", "out.1.png"],
                          [output["file"] for output in report["outputs"]])
+
+    def test_the_report_lists_every_lightmap_with_all_that_lies_in_it(self):
+        result = self.solve("-o", "out.exr", "--report", "r.json", "--texel-size", "0.1",
+                            "--padding", "3", "--atlas-size", "16")
+
+        self.assertEqual((0, ""), (result.returncode, result.stderr))
+        report = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        for lightmap, file, name in zip(report["lightmaps"], ("out.exr", "out.1.exr"),
+                                        ("floor", "ceiling"), strict=True):
+            covered = sum(part > 0 for part in Exr(self.folder / file).channels()["coverage"])
+            self.assertAlmostEqual(0.1, lightmap.pop("texel_size"))
+            self.assertEqual({"file": file, "width": 16, "height": 16, "charts": 1,
+                              "covered_texels": covered, "objects": [name]}, lightmap)
+            self.assertEqual(100, covered)
+
+    def test_info_lists_the_lightmaps_and_a_few_of_their_objects(self):
+        self.write("sheet.gltf", gltf(uvs=UPRIGHT, nodes=[
+            {"mesh": 0, "name": f"n{i}", "translation": [2 * i, 0, 0]} for i in range(12)]))
+        lines = self.run_hemirad("info", "sheet.gltf", "--atlas-size", "8").stdout.splitlines()
+        at = lines.index("lightmaps    12")
+        self.assertEqual("  sheet.exr: 8 x 8 texels of 0.125 m, 100 % filled, 1 chart: n0",
+                         lines[at + 1])
+        self.assertTrue(lines[at + 10].startswith("  sheet.9.exr: 8 x 8 texels"), lines[at + 10])
+        self.assertEqual("  and 2 more", lines[at + 11])
+
+        generated = self.run_hemirad("info", "sheet.gltf", "--charts", "generated").stdout
+        self.assertRegex(generated, r"lightmaps    1\n  sheet\.exr: \d+ x \d+ texels of 0\.\d+ m, "
+                                    r"[\d.]+ % filled, 12 charts: n0, n1, n2 and 9 more\n")
 
     def test_a_second_atlas_does_not_overwrite_another_output(self):
         (self.folder / "out.1.exr").mkdir()
