@@ -20,6 +20,7 @@
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
+#include "solver/dark_backs.h"
 #include "solver/solver.h"
 #include "solver/stopwatch.h"
 
@@ -220,7 +221,8 @@ void print_cost(std::ostream& out, const Mesh& mesh, const ChartLayout& layout,
 int print_info(SolveOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
-    const auto mesh = build_mesh(scene, options.mesh);
+    auto mesh = build_mesh(scene, options.mesh);
+    if (options.lit_backs_only) drop_dark_backs(mesh);
     if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);
     print_contents(out, scene, mesh, options.mesh);
     print_parts(out, mesh, options.mesh.backfaces);

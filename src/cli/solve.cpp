@@ -30,6 +30,7 @@
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
+#include "solver/dark_backs.h"
 #include "solver/find_shooter_splits.h"
 #include "solver/stopwatch.h"
 
@@ -68,6 +69,7 @@ Work prepare(SolveOptions& options) {
             "--element-size " + number_text(options.mesh.element_size) + " is above --patch-size " +
             number_text(options.mesh.patch_size) + ": a patch is its own element");
     work.mesh = build_mesh(work.scene, options.mesh);
+    if (options.lit_backs_only) drop_dark_backs(work.mesh);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
     for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);
     options.charts.texel_size = work.layout.texel_size;
@@ -311,6 +313,8 @@ bool split_where_light_varies(Work& work, const Solving& solving, const SolveOpt
             find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound),
             find_shooter_splits(work.mesh, outcome.solution, kShooterBound)};
         Mesh finer = split_mesh(work.scene, options.mesh, work.mesh, splits);
+        for (std::size_t i = 0; i < finer.surfaces.size(); ++i)
+            finer.surfaces[i].has_chart = work.mesh.surfaces[i].has_chart;
         if (finer.patches.size() == work.mesh.patches.size() &&
             finer.shooter_count() == work.mesh.shooter_count())
             return true;

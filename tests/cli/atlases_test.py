@@ -47,6 +47,26 @@ def gltf(uvs, nodes=({"mesh": 0, "name": "sheet"},)):
     return json.dumps(document)
 
 
+QUADS = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+
+
+def lamp_in_double_sided_room():
+    """Corners of a box are counted in binary, x last; the room's fronts are inside."""
+    positions = [(side * x + at, side * y + at, side * z + at)
+                 for side, at in ((1, 0), (0.25, 0.5)) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    room = [i for a, b, c, d in QUADS for i in (a, c, b, a, d, c)]
+    lamp = [8 + i for a, b, c, d in QUADS for i in (a, b, c, a, c, d)]
+    document = json.loads(scenes.gltf(positions, room + lamp))
+    document["accessors"][1]["count"] = len(room)
+    document["accessors"].append({**document["accessors"][1], "byteOffset": 4 * len(room)})
+    document["materials"].append({"name": "wall", "doubleSided": True,
+                                  "pbrMetallicRoughness": {"baseColorFactor": [.5, .5, .5, 1]}})
+    document["meshes"][0]["primitives"] = [
+        {"attributes": {"POSITION": 0}, "indices": indices, "material": material}
+        for indices, material in ((1, 1), (2, 0))]
+    return json.dumps(document)
+
+
 class Atlases(scenes.InFolder):
     def solve(self, *arguments, scene="scene.obj"):
         return self.run_hemirad("solve", scene, *QUICK, *arguments)
@@ -96,6 +116,22 @@ class Atlases(scenes.InFolder):
         generated = self.run_hemirad("info", "sheet.gltf", "--charts", "generated").stdout
         self.assertRegex(generated, r"lightmaps    1\n  sheet\.exr: \d+ x \d+ texels of 0\.\d+ m, "
                                     r"[\d.]+ % filled, 12 charts: n0, n1, n2 and 9 more\n")
+
+    def test_backs_that_no_light_comes_to_are_left_out_on_request(self):
+        self.write("room.gltf", lamp_in_double_sided_room())
+        reports = []
+        for backs in ((), ("--backs", "lit")):
+            result = self.solve("-o", "a.glb", "--report", "r.json", "--backfaces", "block", *backs,
+                                scene="room.gltf")
+            self.assertEqual((0, ""), (result.returncode, result.stderr))
+            reports.append(json.loads((self.folder / "r.json").read_text(encoding="utf-8")))
+        full, lit = reports
+
+        self.assertEqual([18, 12], [report["lightmaps"][0]["charts"] for report in reports])
+        self.assertEqual("lit", lit["settings"]["backs"])
+        self.assertEqual(full["ledger"], lit["ledger"])
+        self.assertIn(", 12 charts: ", self.run_hemirad("info", "room.gltf", "--backfaces", "block",
+                                                        "--backs", "lit").stdout)
 
     def test_a_second_atlas_does_not_overwrite_another_output(self):
         (self.folder / "out.1.exr").mkdir()
