@@ -12,12 +12,15 @@
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
+#include "lightmap/atlas_contents.h"
+#include "lightmap/atlas_file.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
 #include "scene/printable.h"
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
+#include "solver/dark_backs.h"
 #include "solver/solver.h"
 #include "solver/stopwatch.h"
 
@@ -55,13 +58,13 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh,
         << counted(mesh.input.inside_out, "room") << " inside out\n";
 }
 
-std::string object_names(const Mesh& mesh, const Part& part) {
+std::string object_names(const Mesh& mesh, const std::vector<std::uint32_t>& objects) {
     constexpr std::size_t kInFull = 3;
     std::string names;
-    for (std::size_t i = 0; i < std::min(part.objects.size(), kInFull); ++i)
-        names += (i == 0 ? "" : ", ") + printable(mesh.objects[part.objects[i]]);
-    if (part.objects.size() > kInFull)
-        names += " and " + std::to_string(part.objects.size() - kInFull) + " more";
+    for (std::size_t i = 0; i < std::min(objects.size(), kInFull); ++i)
+        names += (i == 0 ? "" : ", ") + printable(mesh.objects[objects[i]]);
+    if (objects.size() > kInFull)
+        names += " and " + std::to_string(objects.size() - kInFull) + " more";
     return names;
 }
 
@@ -78,8 +81,8 @@ void print_parts(std::ostream& out, const Mesh& mesh, Backfaces backfaces) {
     out << "parts        " << mesh.parts.size() << ", --backfaces " << name_of(backfaces) << '\n';
     for (std::size_t i = 0; i < std::min(mesh.parts.size(), kInFull); ++i) {
         const auto& part = mesh.parts[i];
-        out << "  " << object_names(mesh, part) << ": " << counted(part.face_count, "face") << ", "
-            << backs_of(part) << '\n';
+        out << "  " << object_names(mesh, part.objects) << ": " << counted(part.face_count, "face")
+            << ", " << backs_of(part) << '\n';
     }
     if (mesh.parts.size() > kInFull) out << "  and " << mesh.parts.size() - kInFull << " more\n";
     out << "scene        "
@@ -162,6 +165,26 @@ void print_time(std::ostream& out, const std::string& what, const Mesh& mesh,
     }
 }
 
+std::string texels_text(const AtlasContents& atlas) {
+    const double texels = 1.0 * atlas.width * atlas.height;
+    return std::to_string(atlas.width) + " x " + std::to_string(atlas.height) + " texels of " +
+           rounded_text(atlas.texel_size) + " m, " + percent_text(atlas.filled / texels) +
+           " filled";
+}
+
+// Files as solve names them where it is not told otherwise.
+void print_lightmaps(std::ostream& out, const Scene& scene, const Mesh& mesh,
+                     const ChartLayout& layout, const SolveOptions& options) {
+    constexpr std::size_t kInFull = 10;
+    const auto atlases = atlas_contents(scene, mesh, layout);
+    out << "lightmaps    " << atlases.size() << '\n';
+    for (std::uint32_t i = 0; i < std::min(atlases.size(), kInFull); ++i)
+        out << "  " << printable(atlas_file(options.scene.stem().string() + ".exr", i).string())
+            << ": " << texels_text(atlases[i]) << ", " << counted(atlases[i].chart_count, "chart")
+            << ": " << object_names(mesh, atlases[i].objects) << '\n';
+    if (atlases.size() > kInFull) out << "  and " << atlases.size() - kInFull << " more\n";
+}
+
 /// Printed as the memory's line: what else there is to tell of the scene is told.
 std::optional<ChartLayout> layout_or_fault(std::ostream& out, const Scene& scene, const Mesh& mesh,
                                            const SolveOptions& options) {
@@ -173,17 +196,15 @@ std::optional<ChartLayout> layout_or_fault(std::ostream& out, const Scene& scene
     }
 }
 
-void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
+void print_cost(std::ostream& out, const Mesh& mesh, const ChartLayout& layout,
                 const SolveOptions& options) {
     if (mp1map::list_devices().empty()) {
         out << "memory       no device to estimate it for\n";
         return;
     }
     const auto device = mp1map::Device::open(options.device, options.compute_units);
-    const auto layout = layout_or_fault(out, scene, mesh, options);
-    if (!layout) return;
     const auto limit = options.memory_limit.value_or(available_memory());
-    const auto memory = estimate_memory(mesh, *layout, options, device.summary());
+    const auto memory = estimate_memory(mesh, layout, options, device.summary());
     out << "device       " << printable(device.summary().name) << ", "
         << bytes_text(device.summary().global_memory) << '\n'
         << "memory       " << memory_text(memory) << (options.memory_limit ? "; limit " : "; free ")
@@ -200,13 +221,17 @@ void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
 int print_info(SolveOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
-    const auto mesh = build_mesh(scene, options.mesh);
+    auto mesh = build_mesh(scene, options.mesh);
+    if (options.lit_backs_only) drop_dark_backs(mesh);
     if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);
     print_contents(out, scene, mesh, options.mesh);
     print_parts(out, mesh, options.mesh.backfaces);
     print_bands(out, mesh);
     print_lights(out, mesh, options.solver.parts.lights);
-    print_cost(out, scene, mesh, options);
+    if (const auto layout = layout_or_fault(out, scene, mesh, options)) {
+        print_lightmaps(out, scene, mesh, *layout, options);
+        print_cost(out, mesh, *layout, options);
+    }
     const auto warnings = warnings_of(scene, mesh);
     out << "warnings     " << warnings.size() << '\n';
     for (const auto& warning : warnings) out << "  " << printable(warning) << '\n';

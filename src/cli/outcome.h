@@ -10,6 +10,7 @@
 
 #include "cli/gather_lightmaps.h"
 #include "cli/memory.h"
+#include "lightmap/atlas_contents.h"
 #include "mp1map/device.h"
 #include "mp1map/pe_array.h"
 #include "solver/accuracy.h"
@@ -17,6 +18,13 @@
 #include "solver/solver.h"
 
 namespace hemirad {
+
+/// An atlas as it was written.
+struct LightmapFile {
+    std::filesystem::path file;
+    AtlasContents contents;
+    std::size_t covered_texels = 0;  ///< that a surface reaches into
+};
 
 /// What a solve came to, for the summary and the report.
 struct Outcome {
@@ -50,6 +58,7 @@ struct Outcome {
     std::uint64_t device_bytes = 0;
     MemoryEstimate memory;             ///< as told before the work began
     std::optional<Forecast> forecast;  ///< as told before the first shot
+    std::vector<LightmapFile> lightmaps;
     std::vector<std::filesystem::path> outputs;
     std::vector<std::string> warnings;
 };

@@ -151,13 +151,19 @@ void check_outputs(const SolveOptions& options) {
     for (const auto& file : files) check_writable(file);
 }
 
-void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                   const Solution& solution, const Solution* error,
-                   const GatheredLightmaps* gathered) {
-    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas)
-        write_lightmap(options, atlas,
-                       layered_lightmap(options, mesh, layout, atlas, solution, error, gathered),
+std::vector<std::size_t> write_picture(const SolveOptions& options, const Mesh& mesh,
+                                       const ChartLayout& layout, const Solution& solution,
+                                       const Solution* error, const GatheredLightmaps* gathered) {
+    std::vector<std::size_t> covered;
+    for (std::uint32_t atlas = 0; atlas < layout.atlases.size(); ++atlas) {
+        const auto lightmap =
+            layered_lightmap(options, mesh, layout, atlas, solution, error, gathered);
+        write_lightmap(options, atlas, lightmap,
                        attributes_of(options, solution, gathered != nullptr));
+        covered.push_back(static_cast<std::size_t>(
+            std::ranges::count_if(lightmap.coverage, [](float part) { return part > 0; })));
+    }
+    return covered;
 }
 
 void write_solved_scene(const SolveOptions& options, const Scene& scene,

@@ -34,10 +34,12 @@ void check_distinct(const std::filesystem::path& scene,
 void check_outputs(const SolveOptions& options);
 
 /// Lightmaps, with their layers, and previews of the solution so far; `error`, if not null, is a
-/// layer, and what was `gathered` is shown instead of what patches tell.
-void write_picture(const SolveOptions& options, const Mesh& mesh, const ChartLayout& layout,
-                   const Solution& solution, const Solution* error = nullptr,
-                   const GatheredLightmaps* gathered = nullptr);
+/// layer, and what was `gathered` is shown instead of what patches tell. How many texels of each
+/// atlas surfaces reach into.
+std::vector<std::size_t> write_picture(const SolveOptions& options, const Mesh& mesh,
+                                       const ChartLayout& layout, const Solution& solution,
+                                       const Solution* error = nullptr,
+                                       const GatheredLightmaps* gathered = nullptr);
 
 /// As write_picture() and write_solved_scene(), with_ambient(); the lightmap's header says so. Says
 /// why one could not be written, which ends no solve: the final picture is what counts.

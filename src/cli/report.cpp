@@ -94,6 +94,22 @@ Json gather_json(const Outcome& outcome) {
             {"texels_interpolated", outcome.gathered->interpolated()}};
 }
 
+Json lightmaps_json(const Mesh& mesh, const Outcome& outcome) {
+    Json lightmaps = Json::array();
+    for (const auto& [file, contents, covered_texels] : outcome.lightmaps) {
+        Json objects = Json::array();
+        for (const std::uint32_t object : contents.objects) objects.push_back(mesh.objects[object]);
+        lightmaps.push_back({{"file", file.string()},
+                             {"width", contents.width},
+                             {"height", contents.height},
+                             {"texel_size", contents.texel_size},
+                             {"charts", contents.chart_count},
+                             {"covered_texels", covered_texels},
+                             {"objects", objects}});
+    }
+    return lightmaps;
+}
+
 Json seconds_json(const Outcome& outcome) {
     const auto& seconds = outcome.seconds;
     Json stages = Json::object();
@@ -150,6 +166,7 @@ void write_report(const std::filesystem::path& path, const SolveOptions& options
         {"seconds", seconds_json(outcome)},
         {"estimate", estimate_json(outcome)},
         {"peak_memory_bytes", peak_memory_bytes()},
+        {"lightmaps", lightmaps_json(mesh, outcome)},
         {"outputs", outputs_json(outcome)},
         {"warnings", outcome.warnings}};
     // Names in a scene may be in any encoding; JSON is UTF-8.

@@ -22,12 +22,15 @@
 #include "cli/summary.h"
 #include "cli/text.h"
 #include "errors.h"
+#include "lightmap/atlas_contents.h"
+#include "lightmap/atlas_file.h"
 #include "lightmap/find_splits.h"
 #include "lightmap/write_faces.h"
 #include "scene/printable.h"
 #include "scene/read_scene.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
+#include "solver/dark_backs.h"
 #include "solver/find_shooter_splits.h"
 #include "solver/stopwatch.h"
 
@@ -66,6 +69,7 @@ Work prepare(SolveOptions& options) {
             "--element-size " + number_text(options.mesh.element_size) + " is above --patch-size " +
             number_text(options.mesh.patch_size) + ": a patch is its own element");
     work.mesh = build_mesh(work.scene, options.mesh);
+    if (options.lit_backs_only) drop_dark_backs(work.mesh);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
     for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);
     options.charts.texel_size = work.layout.texel_size;
@@ -309,6 +313,8 @@ bool split_where_light_varies(Work& work, const Solving& solving, const SolveOpt
             find_splits(work.mesh, outcome.solution, options.mesh.split_levels, kBound),
             find_shooter_splits(work.mesh, outcome.solution, kShooterBound)};
         Mesh finer = split_mesh(work.scene, options.mesh, work.mesh, splits);
+        for (std::size_t i = 0; i < finer.surfaces.size(); ++i)
+            finer.surfaces[i].has_chart = work.mesh.surfaces[i].has_chart;
         if (finer.patches.size() == work.mesh.patches.size() &&
             finer.shooter_count() == work.mesh.shooter_count())
             return true;
@@ -318,11 +324,23 @@ bool split_where_light_varies(Work& work, const Solving& solving, const SolveOpt
     return true;
 }
 
-void write_results(const Work& work, const SolveOptions& options, const Outcome& outcome) {
+std::vector<LightmapFile> files_of(const Work& work, const SolveOptions& options,
+                                   const std::vector<std::size_t>& covered) {
+    if (!options.report) return {};
+    std::vector<LightmapFile> files;
+    for (auto& contents : atlas_contents(work.scene, work.mesh, work.layout)) {
+        const auto atlas = static_cast<std::uint32_t>(files.size());
+        files.push_back({atlas_file(options.output, atlas), std::move(contents), covered[atlas]});
+    }
+    return files;
+}
+
+void write_results(const Work& work, const SolveOptions& options, Outcome& outcome) {
     const bool layer = options.estimate_error && outcome.error;
     const auto* const gathered = outcome.gathered ? &*outcome.gathered : nullptr;
-    write_picture(options, work.mesh, work.layout, outcome.solution,
-                  layer ? &outcome.error->by_patch : nullptr, gathered);
+    const auto covered = write_picture(options, work.mesh, work.layout, outcome.solution,
+                                       layer ? &outcome.error->by_patch : nullptr, gathered);
+    outcome.lightmaps = files_of(work, options, covered);
     write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout, outcome.solution,
                        gathered);
     if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
@@ -330,8 +348,7 @@ void write_results(const Work& work, const SolveOptions& options, const Outcome&
 
 /// Where it fails, the lightmap of the patches is written: the solve was the longer part.
 std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,
-                                                   const SolveOptions& options,
-                                                   const Outcome& outcome) {
+                                                   const SolveOptions& options, Outcome& outcome) {
     const Work& work = solving.work;
     const auto go_on = [&] {
         return !solving.interrupts.requested() &&

@@ -11,6 +11,7 @@ namespace hemirad {
 namespace {
 
 const std::vector<std::string_view> kChartSources{"authored", "generated"};
+const std::vector<std::string_view> kBacks{"all", "lit"};
 const std::vector<std::string_view> kQuantities{"irradiance", "radiosity"};
 const std::vector<std::string_view> kQualities{"draft", "medium", "high", "ultra"};
 const std::vector<std::string_view> kFormFactorModes{"count", "analytic"};
@@ -66,7 +67,8 @@ void add_accuracy_options(CLI::App& command, SolveOptions& options) {
     add_split(command, options.mesh);
 }
 
-void add_chart_options(CLI::App& command, ChartSettings& charts) {
+void add_chart_options(CLI::App& command, SolveOptions& options) {
+    auto& charts = options.charts;
     begin_group(command, "Lightmap");
     add_value(command, {"--texel-size", "METRES", "edge of a texel [half a patch's edge]"},
               [&](const OptionValue& value) { charts.texel_size = positive_number(value); });
@@ -88,6 +90,12 @@ void add_chart_options(CLI::App& command, ChartSettings& charts) {
               [&](const OptionValue& value) {
                   charts.source = static_cast<ChartSource>(one_of(value, kChartSources));
               });
+    add_value(
+        command,
+        {"--backs", "all|lit",
+         "which backs of double-sided faces get charts: those that closed walls part from all "
+         "lamps are black [all]"},
+        [&](const OptionValue& value) { options.lit_backs_only = one_of(value, kBacks) == 1; });
     add_flag(command, "--flip-v", charts.flip_v,
              "V runs up from the lightmap's bottom row, not down from its top [off]");
 }
@@ -288,7 +296,7 @@ void add_talk_options(CLI::App& command, SolveOptions& options) {
 
 void add_work_options(CLI::App& command, SolveOptions& options) {
     add_accuracy_options(command, options);
-    add_chart_options(command, options.charts);
+    add_chart_options(command, options);
     add_gather(command, options);
     add_stop_options(command, options.solver);
     add_memory_limit(command, options.memory_limit);
@@ -414,6 +422,7 @@ std::vector<std::pair<std::string, std::string>> deciding_options(const SolveOpt
         result.emplace_back("--atlas-size", std::to_string(options.charts.atlas_size));
     if (options.charts.source == ChartSource::generated)
         result.emplace_back("--charts", "generated");
+    if (options.lit_backs_only) result.emplace_back("--backs", "lit");
     if (options.charts.flip_v) result.emplace_back("--flip-v", "");
     if (options.mesh.weld > 0) result.emplace_back("--weld", number_text(options.mesh.weld));
     if (options.target_error)

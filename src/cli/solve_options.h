@@ -40,6 +40,7 @@ struct SolveOptions {
     std::optional<double> target_error;  ///< relative RMS of the patches' irradiance
     bool estimate_error = false;
     ChartSettings charts;
+    bool lit_backs_only = false;          ///< drop_dark_backs()
     std::optional<std::uint32_t> gather;  ///< N: texels look through N x N proxels of their own
     double gather_error = 0.01;           ///< of what they then interpolate
     std::uint32_t atlas_count = 1;        ///< as the layout of the scene's charts turns out

@@ -6,6 +6,7 @@ import struct
 import unittest
 
 import scenes
+from exr import Exr
 
 QUICK = ("--resolution", "64", "--patch-size", "0.25", "-q")
 
@@ -46,6 +47,26 @@ def gltf(uvs, nodes=({"mesh": 0, "name": "sheet"},)):
     return json.dumps(document)
 
 
+QUADS = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+
+
+def lamp_in_double_sided_room():
+    """Corners of a box are counted in binary, x last; the room's fronts are inside."""
+    positions = [(side * x + at, side * y + at, side * z + at)
+                 for side, at in ((1, 0), (0.25, 0.5)) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    room = [i for a, b, c, d in QUADS for i in (a, c, b, a, d, c)]
+    lamp = [8 + i for a, b, c, d in QUADS for i in (a, b, c, a, c, d)]
+    document = json.loads(scenes.gltf(positions, room + lamp))
+    document["accessors"][1]["count"] = len(room)
+    document["accessors"].append({**document["accessors"][1], "byteOffset": 4 * len(room)})
+    document["materials"].append({"name": "wall", "doubleSided": True,
+                                  "pbrMetallicRoughness": {"baseColorFactor": [.5, .5, .5, 1]}})
+    document["meshes"][0]["primitives"] = [
+        {"attributes": {"POSITION": 0}, "indices": indices, "material": material}
+        for indices, material in ((1, 1), (2, 0))]
+    return json.dumps(document)
+
+
 class Atlases(scenes.InFolder):
     def solve(self, *arguments, scene="scene.obj"):
         return self.run_hemirad("solve", scene, *QUICK, *arguments)
@@ -67,6 +88,50 @@ class Atlases(scenes.InFolder):
         report = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         self.assertEqual(["out.exr", "out.png", "out.1.exr", "out.1.png"],
                          [output["file"] for output in report["outputs"]])
+
+    def test_the_report_lists_every_lightmap_with_all_that_lies_in_it(self):
+        result = self.solve("-o", "out.exr", "--report", "r.json", "--texel-size", "0.1",
+                            "--padding", "3", "--atlas-size", "16")
+
+        self.assertEqual((0, ""), (result.returncode, result.stderr))
+        report = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        for lightmap, file, name in zip(report["lightmaps"], ("out.exr", "out.1.exr"),
+                                        ("floor", "ceiling"), strict=True):
+            covered = sum(part > 0 for part in Exr(self.folder / file).channels()["coverage"])
+            self.assertAlmostEqual(0.1, lightmap.pop("texel_size"))
+            self.assertEqual({"file": file, "width": 16, "height": 16, "charts": 1,
+                              "covered_texels": covered, "objects": [name]}, lightmap)
+            self.assertEqual(100, covered)
+
+    def test_info_lists_the_lightmaps_and_a_few_of_their_objects(self):
+        self.write("sheet.gltf", gltf(uvs=UPRIGHT, nodes=[
+            {"mesh": 0, "name": f"n{i}", "translation": [2 * i, 0, 0]} for i in range(12)]))
+        lines = self.run_hemirad("info", "sheet.gltf", "--atlas-size", "8").stdout.splitlines()
+        at = lines.index("lightmaps    12")
+        self.assertEqual("  sheet.exr: 8 x 8 texels of 0.125 m, 100 % filled, 1 chart: n0",
+                         lines[at + 1])
+        self.assertTrue(lines[at + 10].startswith("  sheet.9.exr: 8 x 8 texels"), lines[at + 10])
+        self.assertEqual("  and 2 more", lines[at + 11])
+
+        generated = self.run_hemirad("info", "sheet.gltf", "--charts", "generated").stdout
+        self.assertRegex(generated, r"lightmaps    1\n  sheet\.exr: \d+ x \d+ texels of 0\.\d+ m, "
+                                    r"[\d.]+ % filled, 12 charts: n0, n1, n2 and 9 more\n")
+
+    def test_backs_that_no_light_comes_to_are_left_out_on_request(self):
+        self.write("room.gltf", lamp_in_double_sided_room())
+        reports = []
+        for backs in ((), ("--backs", "lit")):
+            result = self.solve("-o", "a.glb", "--report", "r.json", "--backfaces", "block", *backs,
+                                scene="room.gltf")
+            self.assertEqual((0, ""), (result.returncode, result.stderr))
+            reports.append(json.loads((self.folder / "r.json").read_text(encoding="utf-8")))
+        full, lit = reports
+
+        self.assertEqual([18, 12], [report["lightmaps"][0]["charts"] for report in reports])
+        self.assertEqual("lit", lit["settings"]["backs"])
+        self.assertEqual(full["ledger"], lit["ledger"])
+        self.assertIn(", 12 charts: ", self.run_hemirad("info", "room.gltf", "--backfaces", "block",
+                                                        "--backs", "lit").stdout)
 
     def test_a_second_atlas_does_not_overwrite_another_output(self):
         (self.folder / "out.1.exr").mkdir()

@@ -430,6 +430,7 @@ class Report(CommandLine):
         self.assertGreater(report["peak_memory_bytes"], 1 << 20)
         self.assertEqual(64, report["settings"]["resolution"])
         self.assertEqual([], report["warnings"])
+        self.assertEqual(["scene.exr"], [lightmap["file"] for lightmap in report["lightmaps"]])
         self.assertIn("project_patches", report["seconds"]["per_stage"])
 
     def test_counts_patches_and_their_elements(self):

@@ -2,14 +2,18 @@
 """`hemirad solve --gather`: options, report, layers and the glTF's picture. HEMIRAD names the
 binary."""
 import json
+import pathlib
+import subprocess
+import sys
 import unittest
 
-from cli_test import CommandLine
+from cli_test import HEMIRAD, CommandLine
 from exr import Exr
 from exr_layers_test import BOX, FLOAT, MATERIALS
 
 QUICK = ("--resolution", "64", "--patch-size", "0.5", "--quality", "draft", "--texel-size", "0.125")
 GATHER = ("--gather", "64")
+MEASURE_GATHER = pathlib.Path(__file__).resolve().parents[2] / "tools/measure-gather"
 
 
 class Gather(CommandLine):
@@ -44,6 +48,26 @@ class Gather(CommandLine):
         self.assertIsNone(none["gather"])
         self.assertEqual(0, none["seconds"]["gather"])
         self.assertNotIn("gather", none["settings"])
+
+    def measured(self, *arguments):
+        done = subprocess.run(
+            [sys.executable, MEASURE_GATHER, "scene.obj", "reference.exr", "--texel-size", "0.125",
+             "--hemirad", HEMIRAD, *arguments], cwd=self.folder, text=True, capture_output=True,
+            check=False)
+        return done.stderr or [[cell.strip() for cell in row.split("|")[1:-1]]
+                               for row in done.stdout.splitlines()[2:]]
+
+    def test_what_a_gather_buys_is_measured_against_a_reference(self):
+        self.assert_done(self.run_hemirad(
+            "solve", "scene.obj", "-o", "reference.exr", *QUICK[2:], *GATHER, "--gather-error", "0"))
+
+        rows = self.measured("--patch-size", "0.5", "--gather", "64/0")
+
+        self.assertEqual(["from patches", "`--gather 64 --gather-error 0`"], [row[2] for row in rows])
+        self.assertEqual(["0.00 %", "0.0 %"], rows[1][5:])
+        self.assertGreater(float(rows[0][5].split()[0]), 0.1)
+        self.assertIn("the reference has other charts",
+                      self.measured("--patch-size", "0.5", "--texel-size", "0.25"))
 
     def test_lights_and_direct_and_indirect_light_add_up_to_what_is_gathered(self):
         for quantity in ("irradiance", "radiosity"):
