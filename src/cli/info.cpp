@@ -16,6 +16,7 @@
 #include "mp1map/pe_array.h"
 #include "scene/printable.h"
 #include "scene/read_scene.h"
+#include "scene/short_text.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
 #include "solver/solver.h"
@@ -57,12 +58,8 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh,
 
 std::string object_names(const Mesh& mesh, const Part& part) {
     constexpr std::size_t kInFull = 3;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(part.objects.size(), kInFull); ++i)
-        names += (i == 0 ? "" : ", ") + printable(mesh.objects[part.objects[i]]);
-    if (part.objects.size() > kInFull)
-        names += " and " + std::to_string(part.objects.size() - kInFull) + " more";
-    return names;
+    return names_in_short(part.objects.size(), kInFull,
+                          [&](std::size_t i) { return printable(mesh.objects[part.objects[i]]); });
 }
 
 /// Why a part got the backs it has, sec. 1.5.1 being right for closed solids only.

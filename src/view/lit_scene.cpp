@@ -8,6 +8,7 @@
 #include "lightmap/atlas_file.h"
 #include "lightmap/read_exr.h"
 #include "scene/gltf_file.h"
+#include "scene/short_text.h"
 #include "scene/read_scene.h"
 
 namespace hemirad {
@@ -103,10 +104,6 @@ std::optional<ImageSize> size_in_gltf(const GltfFile& gltf, std::uint32_t atlas)
         return value;
     };
     return ImageSize{word(kBegin.size()), word(kBegin.size() + 4)};
-}
-
-std::string size_text(std::uint32_t width, std::uint32_t height) {
-    return std::to_string(width) + " x " + std::to_string(height);
 }
 
 /// The same charts in another size are other charts: UVs would lead to foreign texels.
