@@ -32,12 +32,6 @@ fs::path place_of(const fs::path& file) {
     return fault ? absolute.lexically_normal() : place;
 }
 
-bool is_device_or_pipe(const fs::path& file) {
-    std::error_code ignored;
-    const auto status = fs::status(file, ignored);
-    return fs::exists(status) && !fs::is_regular_file(status);
-}
-
 std::vector<fs::path> all_files(const SolveOptions& options) {
     std::vector<fs::path> files = output_files(options);
     if (options.report) files.push_back(*options.report);
@@ -113,7 +107,9 @@ std::vector<fs::path> output_files(const SolveOptions& options) {
 void check_ending(std::string_view option, const fs::path& file,
                   std::initializer_list<std::string_view> endings) {
     if (std::ranges::count(endings, file.extension().native()) > 0) return;
-    if (is_device_or_pipe(file)) return;
+    std::error_code ignored;
+    // That it is a folder is told by check_writable().
+    if (is_device_or_pipe(file) || fs::is_directory(file, ignored)) return;
     std::string names;
     for (const auto* ending = endings.begin(); ending != endings.end(); ++ending)
         names += (names.empty()                 ? ""
