@@ -197,6 +197,7 @@ void print_cost(std::ostream& out, const Scene& scene, const Mesh& mesh,
 int print_info(SolveOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
+    require_memory_for_mesh(scene, options.mesh, options.memory_limit);
     const auto mesh = build_mesh(scene, options.mesh);
     if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);
     print_contents(out, scene, mesh, options.mesh);

@@ -66,6 +66,7 @@ Work prepare(SolveOptions& options) {
             "--element-size " + number_text(options.mesh.element_size) + " is above --patch-size " +
             number_text(options.mesh.patch_size) + ": a patch is its own element");
     work.mesh = build_mesh(work.scene, options.mesh);
+    require_memory_for_mesh(work.scene, options.mesh, options.memory_limit);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
     for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);
     options.charts.texel_size = work.layout.texel_size;
