@@ -188,6 +188,7 @@ void check_output(RenderOptions& options) {
 int render_scene(RenderOptions options) {
     check_output(options);
     const LitScene lit = read_lit_scene(options.scene, options.lightmap);
+    keep_side_files(lit.scene, {options.output});
     auto camera = options.eye ? own_camera(lit.scene, options) : named_camera(lit, options.camera);
     camera.yfov = options.fov.value_or(camera.yfov);
     choose_size(options, camera, options.render);

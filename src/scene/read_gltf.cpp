@@ -421,6 +421,7 @@ Scene read_gltf(const InputFile& file) {
     const GltfFile gltf = load_gltf(file);
     Builder builder{gltf};
     builder.scene.file = file.name;
+    builder.scene.side_files.assign(gltf.side_files.begin(), gltf.side_files.end());
     read_gltf_materials(gltf, builder.scene);
     const auto nodes = place_nodes(gltf);
     check_placed(gltf, nodes);
