@@ -111,6 +111,7 @@ void Acu::wait() {
 }
 
 void Acu::collect() {
+    if (pending_.empty()) return;
     wait();
     guarded("profiling", [&] {
         for (const auto& [name, event] : pending_) {

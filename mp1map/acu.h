@@ -91,7 +91,7 @@ class Acu {
     void wait();
 
     std::uint64_t allocated_bytes() const { return allocated_bytes_; }  ///< by plural(), in all
-    /// Seconds and launches a kernel, by name; waits first. Empty unless timed.
+    /// Seconds and launches a kernel, by name; waits for these first. Empty unless timed.
     const std::map<std::string, std::pair<double, std::uint64_t>>& kernel_seconds();
     void forget_seconds();
 

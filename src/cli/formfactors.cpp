@@ -8,7 +8,9 @@
 #include "cli/formfactors_options.h"
 #include "cli/formfactors_report.h"
 #include "cli/interrupts.h"
+#include "cli/memory.h"
 #include "cli/near_names.h"
+#include "cli/outputs.h"
 #include "cli/row_display.h"
 #include "cli/summary.h"
 #include "cli/text.h"
@@ -94,6 +96,8 @@ void choose_columns(Work& work, const FormFactorsOptions& options) {
 Work prepare(const FormFactorsOptions& options) {
     Work work;
     work.scene = read_scene(options.scene);
+    keep_side_files(work.scene, output_files(options));
+    require_memory_for_mesh(work.scene, options.mesh, {});
     work.mesh = build_mesh(work.scene, options.mesh);
     work.named = named_surfaces(work.scene, work.mesh);
     work.listed = options.per_patch ? single_patches(work.scene, work.mesh) : work.named;

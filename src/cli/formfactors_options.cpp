@@ -98,14 +98,18 @@ void check_formfactors_options(const FormFactorsOptions& options) {
            "--format " + std::string(kFormats[std::size_t(options.format)]) +
                ": a square matrix, not with --from or --receivers-only");
     insist(!options.enforce || options.from.empty(), "--enforce: needs all rows, not with --from");
-    std::vector<fs::path> files;
-    if (options.output) check_output_ending(options), files.push_back(*options.output);
-    if (options.report) {
-        check_ending("--report", *options.report, {".json"});
-        files.push_back(*options.report);
-    }
+    if (options.output) check_output_ending(options);
+    if (options.report) check_ending("--report", *options.report, {".json"});
+    const auto files = output_files(options);
     check_distinct(options.scene, files);
     for (const auto& file : files) check_writable(file);
+}
+
+std::vector<fs::path> output_files(const FormFactorsOptions& options) {
+    std::vector<fs::path> files;
+    if (options.output) files.push_back(*options.output);
+    if (options.report) files.push_back(*options.report);
+    return files;
 }
 
 std::vector<std::pair<std::string, std::string>> deciding_options(

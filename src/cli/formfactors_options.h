@@ -36,6 +36,9 @@ void add_formfactors_options(CLI::App& command, FormFactorsOptions& options);
 /// would overwrite something else, OutputError for outputs that cannot be written.
 void check_formfactors_options(const FormFactorsOptions& options);
 
+/// Every file that the options ask for.
+std::vector<std::filesystem::path> output_files(const FormFactorsOptions& options);
+
 /// The options that decide on the numbers, as name and value, defaults resolved.
 std::vector<std::pair<std::string, std::string>> deciding_options(
     const FormFactorsOptions& options);

@@ -18,6 +18,7 @@
 #include "mp1map/pe_array.h"
 #include "scene/printable.h"
 #include "scene/read_scene.h"
+#include "scene/short_text.h"
 #include "solver/accuracy.h"
 #include "solver/bands.h"
 #include "solver/dark_backs.h"
@@ -60,12 +61,8 @@ void print_contents(std::ostream& out, const Scene& scene, const Mesh& mesh,
 
 std::string object_names(const Mesh& mesh, const std::vector<std::uint32_t>& objects) {
     constexpr std::size_t kInFull = 3;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(objects.size(), kInFull); ++i)
-        names += (i == 0 ? "" : ", ") + printable(mesh.objects[objects[i]]);
-    if (objects.size() > kInFull)
-        names += " and " + std::to_string(objects.size() - kInFull) + " more";
-    return names;
+    return names_in_short(objects.size(), kInFull,
+                          [&](std::size_t i) { return printable(mesh.objects[objects[i]]); });
 }
 
 /// Why a part got the backs it has, sec. 1.5.1 being right for closed solids only.
@@ -167,9 +164,8 @@ void print_time(std::ostream& out, const std::string& what, const Mesh& mesh,
 
 std::string texels_text(const AtlasContents& atlas) {
     const double texels = 1.0 * atlas.width * atlas.height;
-    return std::to_string(atlas.width) + " x " + std::to_string(atlas.height) + " texels of " +
-           rounded_text(atlas.texel_size) + " m, " + percent_text(atlas.filled / texels) +
-           " filled";
+    return size_text(atlas.width, atlas.height) + " texels of " + rounded_text(atlas.texel_size) +
+           " m, " + percent_text(atlas.filled / texels) + " filled";
 }
 
 // Files as solve names them where it is not told otherwise.
@@ -221,6 +217,7 @@ void print_cost(std::ostream& out, const Mesh& mesh, const ChartLayout& layout,
 int print_info(SolveOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
+    require_memory_for_mesh(scene, options.mesh, options.memory_limit);
     auto mesh = build_mesh(scene, options.mesh);
     if (options.lit_backs_only) drop_dark_backs(mesh);
     if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <fstream>
-#include <limits>
 #include <utility>
 
+#include "cli/free_memory.h"
 #include "cli/gather_lightmaps.h"
 #include "cli/text.h"
 #include "errors.h"
@@ -29,7 +29,7 @@ constexpr std::uint64_t kProgram = 88 * kMiB;
 constexpr std::uint64_t kCompiler = 155 * kMiB, kGatherCompiler = 60 * kMiB;
 // Measured at 191,304 to 2 million patches: vertices, patches, fragments and grids, after the mesh
 // was made.
-constexpr std::uint64_t kMeshBytes = 190;
+constexpr std::uint64_t kMeshBytes = 190;  // and 185 to 203 at the most while it is made
 // While the arrays of the device are made on the host: corners, normals, planes.
 constexpr std::uint64_t kUploadBytes = 85;
 // Buffers of 8 MiB and more are of huge pages, of which a touch takes all.
@@ -229,16 +229,6 @@ MemoryParts so_far() {
              "raise --patch-size, or make the scene or its textures smaller"}};
 }
 
-/// The number behind `name` in a file of the kernel's, or at its beginning; `otherwise` where there
-/// is none ("max").
-std::uint64_t number_in(const std::string& file, const std::string& name, std::uint64_t otherwise) {
-    std::ifstream in(file);
-    for (std::string word; word != name && in >> word;) {
-    }
-    std::uint64_t number = 0;
-    return in >> number ? number : otherwise;
-}
-
 std::uint64_t resident_bytes() {
     std::ifstream in("/proc/self/statm");
     std::uint64_t size = 0, resident = 0;
@@ -264,6 +254,18 @@ std::string advice_on(const MemoryEstimate& estimate, std::uint64_t limit) {
     };
     const MemoryPart& largest = *std::ranges::max_element(parts, by_advice);
     return "; " + bytes_text(largest.bytes) + " for " + largest.name + ": " + largest.advice;
+}
+
+/// Of what is told to need more than `limit`, or than is free.
+void require_free(const std::string& scene, const MemoryEstimate& estimate,
+                  std::optional<std::uint64_t> limit) {
+    const std::uint64_t needed = estimate.bytes() + estimate.compiler_bytes;
+    const std::uint64_t most = limit.value_or(available_memory());
+    if (needed <= most) return;
+    throw InputError(
+        shortage(scene, needed,
+                 limit ? "--memory-limit is " + bytes_text(most) : bytes_text(most) + " are free") +
+        advice_on(estimate, most));
 }
 
 }  // namespace
@@ -309,26 +311,24 @@ std::uint64_t peak_memory_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-std::uint64_t available_memory() {
-    constexpr auto kUnknown = std::numeric_limits<std::uint64_t>::max() / 4;
-    const std::uint64_t own = resident_bytes();
-    const std::uint64_t kib = number_in("/proc/meminfo", "MemAvailable:", kUnknown >> 10);
-    const std::uint64_t swap = number_in("/proc/meminfo", "SwapFree:", 0);
-    const std::string group = "/sys/fs/cgroup/memory.";
-    const std::uint64_t most = number_in(group + "max", "", kUnknown);
-    const std::uint64_t used = number_in(group + "current", "", 0);
-    return std::min((kib + swap) * 1024, most - std::min(most, used)) + own;
+std::uint64_t available_memory() { return free_memory() + resident_bytes(); }
+
+void require_memory_for_mesh(const Scene& scene, const MeshSettings& settings,
+                             std::optional<std::uint64_t> limit) {
+    const double patches = least_patches(scene, settings);
+    if (!(patches < kMostMeshPatches)) return;
+    const bool has_elements =
+        settings.element_size > 0 && settings.element_size < settings.patch_size;
+    MemoryEstimate estimate;
+    estimate.parts = {{counted(static_cast<std::uint64_t>(patches), "patch", "patches"),
+                       static_cast<std::uint64_t>(patches * (kMeshBytes + kUploadBytes)),
+                       has_elements ? "raise --element-size" : "raise --patch-size"}};
+    require_free(scene.file, estimate, limit);
 }
 
 void require_memory(const std::string& scene, const MemoryEstimate& estimate,
                     const SolveOptions& options, const mp1map::DeviceSummary& device) {
-    const std::uint64_t needed = estimate.bytes() + estimate.compiler_bytes;
-    const std::uint64_t limit = options.memory_limit.value_or(available_memory());
-    if (needed > limit)
-        throw InputError(shortage(scene, needed,
-                                  options.memory_limit ? "--memory-limit is " + bytes_text(limit)
-                                                       : bytes_text(limit) + " are free") +
-                         advice_on(estimate, limit));
+    require_free(scene, estimate, options.memory_limit);
     if (estimate.device_bytes > device.global_memory)
         throw InputError(shortage(scene, estimate.device_bytes,
                                   device.name + " has " + bytes_text(device.global_memory)) +

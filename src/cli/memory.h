@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,14 @@ MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
 /// Of this process so far, host and, where that is a CPU, device.
 std::uint64_t peak_memory_bytes();
 
-/// What processes may still take of the machine or, where that is less, of their control group,
-/// and what this one has already; the largest number there is where neither can be told.
+/// free_memory(), and what this process has already.
 std::uint64_t available_memory();
+
+/// Before the mesh is made, which may take all there is: throws InputError where its patches alone,
+/// with their arrays for a device, need more than the limit, or, without one, than is free. What
+/// build_mesh() refuses is left to it.
+void require_memory_for_mesh(const Scene& scene, const MeshSettings& settings,
+                             std::optional<std::uint64_t> limit);
 
 /// Throws InputError where a solve needs more than the limit, or more of the device than it has,
 /// with the numbers, the largest part and how to make it smaller.

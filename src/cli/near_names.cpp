@@ -5,6 +5,7 @@
 
 #include "errors.h"
 #include "scene/printable.h"
+#include "scene/short_text.h"
 
 namespace hemirad {
 namespace {
@@ -15,11 +16,8 @@ char lower_case(char c) { return char(std::tolower(static_cast<unsigned char>(c)
 
 std::string nearest(std::vector<std::string> names, std::string_view name) {
     std::ranges::stable_sort(names, {}, [&](const auto& n) { return edit_distance(n, name); });
-    std::string text;
-    for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i)
-        text += (i ? ", \"" : "\"") + printable(names[i]) + '"';
-    if (names.size() > kNamed) text += " and " + std::to_string(names.size() - kNamed) + " more";
-    return text;
+    return names_in_short(names.size(), kNamed,
+                          [&](std::size_t i) { return '"' + printable(names[i]) + '"'; });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "cli/checkpoint_file.h"
 #include "cli/layered_lightmap.h"
@@ -32,12 +33,6 @@ fs::path place_of(const fs::path& file) {
     return fault ? absolute.lexically_normal() : place;
 }
 
-bool is_device_or_pipe(const fs::path& file) {
-    std::error_code ignored;
-    const auto status = fs::status(file, ignored);
-    return fs::exists(status) && !fs::is_regular_file(status);
-}
-
 std::vector<fs::path> all_files(const SolveOptions& options) {
     std::vector<fs::path> files = output_files(options);
     if (options.report) files.push_back(*options.report);
@@ -50,6 +45,17 @@ void keep_resumed(const SolveOptions& options, const std::vector<fs::path>& file
         if (place_of(file) == place_of(*options.resume) && file != options.checkpoint)
             throw InputError("hemirad: " + printable(file.string()) +
                              ": would overwrite the checkpoint of --resume");
+}
+
+/// Which there will be cannot be told; these would be replaced where there are as many shots again.
+std::vector<fs::path> snapshots_there(const SolveOptions& options) {
+    std::vector<fs::path> files;
+    if (!options.snapshots.kept) return files;
+    for (std::uint32_t atlas = 0; atlas < options.atlas_count; ++atlas) {
+        const fs::path exr = atlas_file(options.output, atlas);
+        for (const auto shots : shots_kept(exr)) files.push_back(snapshot_file(exr, shots));
+    }
+    return files;
 }
 
 /// Emission may be up to what a double holds, a lightmap only what a float does.
@@ -113,7 +119,9 @@ std::vector<fs::path> output_files(const SolveOptions& options) {
 void check_ending(std::string_view option, const fs::path& file,
                   std::initializer_list<std::string_view> endings) {
     if (std::ranges::count(endings, file.extension().native()) > 0) return;
-    if (is_device_or_pipe(file)) return;
+    std::error_code ignored;
+    // That it is a folder is told by check_writable().
+    if (is_device_or_pipe(file) || fs::is_directory(file, ignored)) return;
     std::string names;
     for (const auto* ending = endings.begin(); ending != endings.end(); ++ending)
         names += (names.empty()                 ? ""
@@ -133,6 +141,21 @@ void check_distinct(const fs::path& scene, const std::vector<fs::path>& files) {
                                  (other == taken.front() ? "the scene" : "another output"));
         taken.push_back(place);
     }
+}
+
+void keep_side_files(const Scene& scene, const std::vector<fs::path>& files) {
+    std::set<fs::path> places;
+    for (const auto& side_file : scene.side_files) places.insert(place_of(side_file));
+    std::error_code ignored;
+    for (const auto& file : files)
+        if (places.contains(place_of(file)) && fs::exists(file, ignored))
+            throw InputError("hemirad: " + printable(file.string()) +
+                             ": would overwrite a file of the scene");
+}
+
+void keep_side_files(const Scene& scene, const SolveOptions& options) {
+    keep_side_files(scene, all_files(options));
+    keep_side_files(scene, snapshots_there(options));
 }
 
 void check_outputs(const SolveOptions& options) {

@@ -29,6 +29,12 @@ void check_ending(std::string_view option, const std::filesystem::path& file,
 void check_distinct(const std::filesystem::path& scene,
                     const std::vector<std::filesystem::path>& files);
 
+/// InputError where one of the files is one that belongs to the scene: what it was read from, or a
+/// picture it names.
+void keep_side_files(const Scene& scene, const std::vector<std::filesystem::path>& files);
+/// The same of all that the options ask for, and of the kept snapshots that are there already.
+void keep_side_files(const Scene& scene, const SolveOptions& options);
+
 /// Before the work begins: throws InputError where two outputs are one file, or one is the scene,
 /// or a name ends unfittingly; OutputError where one could not be written.
 void check_outputs(const SolveOptions& options);

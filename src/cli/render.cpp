@@ -18,6 +18,7 @@
 #include "lightmap/write_exr.h"
 #include "scene/bounds.h"
 #include "scene/printable.h"
+#include "scene/short_text.h"
 #include "view/lit_scene.h"
 #include "view/picture_of.h"
 #include "view/render.h"
@@ -102,12 +103,7 @@ void add_picture_options(CLI::App& command, RenderOptions& options) {
 /// A few, and how many more.
 std::string names_of(const std::vector<Camera>& cameras) {
     constexpr std::size_t kNamed = 5;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(kNamed, cameras.size()); ++i)
-        names += (i > 0 ? ", " : "") + cameras[i].name;
-    if (cameras.size() > kNamed)
-        names += " and " + std::to_string(cameras.size() - kNamed) + " more";
-    return names;
+    return names_in_short(cameras.size(), kNamed, [&](std::size_t i) { return cameras[i].name; });
 }
 
 Camera named_camera(const LitScene& lit, const std::string& name) {
@@ -142,10 +138,6 @@ void choose_size(const RenderOptions& options, const Camera& camera, RenderSetti
         settings.width = static_cast<std::uint32_t>(
             std::clamp(std::round(settings.height * camera.aspect), 1.0, 8192.0));
     }
-}
-
-std::string size_text(std::uint32_t width, std::uint32_t height) {
-    return std::to_string(width) + " x " + std::to_string(height);
 }
 
 std::vector<std::string> warnings_of(const RenderOptions& options, const Lightmap& rendered) {
@@ -196,6 +188,7 @@ void check_output(RenderOptions& options) {
 int render_scene(RenderOptions options) {
     check_output(options);
     const LitScene lit = read_lit_scene(options.scene, options.lightmap);
+    keep_side_files(lit.scene, {options.output});
     auto camera = options.eye ? own_camera(lit.scene, options) : named_camera(lit, options.camera);
     camera.yfov = options.fov.value_or(camera.yfov);
     choose_size(options, camera, options.render);

@@ -20,6 +20,10 @@ const std::vector<std::string_view> kLayers{"direct",   "indirect", "emission", 
                                             "position", "shots",    "coverage", "error"};
 constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
 
+void add_preview(CLI::App& command, std::optional<std::filesystem::path>& file) {
+    add_text(command, {"--preview", "FILE.png", "the lightmap tone-mapped, to look at"}, file);
+}
+
 void add_file_options(CLI::App& command, SolveOptions& options) {
     add_scene(command, options.scene);
     begin_group(command, "Output");
@@ -29,8 +33,7 @@ void add_file_options(CLI::App& command, SolveOptions& options) {
              options.output);
     add_text(command, {"--gltf", "FILE.glb|.gltf", "the scene with its lightmap, for engines"},
              options.gltf);
-    add_text(command, {"--preview", "FILE.png", "the lightmap tone-mapped, to look at"},
-             options.preview);
+    add_preview(command, options.preview);
     add_text(command, {"--faces", "FILE.csv", "the solution as numbers, a row a polygon"},
              options.faces);
     add_text(command, {"--report", "FILE.json", "what happened, machine-readable"}, options.report);
@@ -162,6 +165,18 @@ void add_checkpoint_options(CLI::App& command, SolveOptions& options) {
              options.resume);
 }
 
+void add_snapshot_every(CLI::App& command, SnapshotInterval& snapshots) {
+    begin_group(command, "On the way");
+    add_value(command,
+              {"--snapshot-every", "SHOTS|SECONDSs",
+               "write the picture so far, what is unshot spread evenly"},
+              [&](const OptionValue& value) {
+                  const bool kept = snapshots.kept;
+                  snapshots = snapshot_interval(value);
+                  snapshots.kept = kept;
+              });
+}
+
 // Of the EXR; coverage is there anyway.
 void wish_for(const OptionValue& layer, SolveOptions& options) {
     bool coverage = true;
@@ -205,15 +220,7 @@ void add_picture_options(CLI::App& command, SolveOptions& options) {
                   options.quantity = static_cast<Quantity>(one_of(value, kQuantities));
               });
     add_pixel_options(command, options);
-    begin_group(command, "On the way");
-    add_value(command,
-              {"--snapshot-every", "SHOTS|SECONDSs",
-               "write the picture so far, what is unshot spread evenly"},
-              [&](const OptionValue& value) {
-                  const bool kept = options.snapshots.kept;
-                  options.snapshots = snapshot_interval(value);
-                  options.snapshots.kept = kept;
-              });
+    add_snapshot_every(command, options.snapshots);
     need(command,
          add_flag(command, "--keep-snapshots", options.snapshots.kept,
                   "each also as NAME-SHOTS.exr, which hemirad view plays"),
@@ -315,9 +322,12 @@ void add_solve_options(CLI::App& command, SolveOptions& options) {
 
 void add_cost_options(CLI::App& command, SolveOptions& options) {
     add_scene(command, options.scene);
+    begin_group(command, "Output");
+    add_preview(command, options.preview);
     add_work_options(command, options);
     begin_group(command, "Lightmap");
     add_pixel_options(command, options);
+    add_snapshot_every(command, options.snapshots);
     add_machine_options(command, options);
 }
 

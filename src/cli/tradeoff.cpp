@@ -77,6 +77,7 @@ class Tradeoff {
           device_(mp1map::Device::open(options.device)) {
         check_ending("--output", options.output, {".csv"});
         check_distinct(options.scene, {options.output});
+        keep_side_files(scene_, {options.output});
         check_writable(options.output);
     }
 

@@ -25,6 +25,7 @@ int view(ViewOptions options) {
     check_distinct(options.scene, {options.output});
     check_writable(options.output);
     const LitScene lit = read_lit_scene(options.scene, options.lightmap);
+    keep_side_files(lit.scene, {options.output});
     const auto snapshots = read_snapshots(lit);
     write_page(options.output, lit, snapshots);
     if (options.quiet) return kDone;

@@ -186,12 +186,6 @@ fs::path resolved(fs::path path) {
     return path;
 }
 
-bool is_device_or_pipe(const fs::path& path) {
-    std::error_code ignored;
-    const fs::file_status status = fs::status(path, ignored);
-    return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-}
-
 /// What a rename would not notice: it replaces read-only files as well.
 void require_replaceable(const fs::path& path) {
     std::error_code ignored;
@@ -201,6 +195,12 @@ void require_replaceable(const fs::path& path) {
 }
 
 }  // namespace
+
+bool is_device_or_pipe(const fs::path& path) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
 
 void write_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
     require_replaceable(path);

@@ -14,6 +14,9 @@ namespace hemirad {
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(std::ostream&)>& write);
 
+/// What is written directly.
+bool is_device_or_pipe(const std::filesystem::path& path);
+
 /// Throws OutputError where write_atomically would fail to start: for asking before a long
 /// computation. Leaves the file that is there untouched, and removes temporary files from its
 /// folder that killed programs left there.

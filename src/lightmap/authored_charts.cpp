@@ -10,6 +10,7 @@
 
 #include "errors.h"
 #include "lightmap/texel_areas.h"
+#include "scene/short_text.h"
 
 namespace hemirad {
 namespace {
@@ -250,10 +251,9 @@ class Placer {
 
     void warn_of(std::size_t count, const std::set<std::uint32_t>& objects, const char* what) {
         if (count == 0) return;
-        const std::string others =
-            objects.size() > 1 ? " and " + std::to_string(objects.size() - 1) + " more" : "";
-        layout_.warnings.push_back(name_of(*objects.begin()) + others + ": " +
-                                   std::to_string(count) +
+        const auto names = names_in_short(objects.size(), 1,
+                                          [&](std::size_t) { return name_of(*objects.begin()); });
+        layout_.warnings.push_back(names + ": " + std::to_string(count) +
                                    (count == 1 ? " triangle is " : " triangles are ") + what);
     }
 

@@ -15,6 +15,7 @@
 #include "errors.h"
 #include "lightmap/chart_layout.h"
 #include "scene/input_file.h"
+#include "scene/short_text.h"
 
 namespace hemirad {
 namespace {
@@ -167,7 +168,7 @@ void add(const ExrFile& file, ExrPart& part, const Attribute& attribute) {
 }
 
 std::string times(std::uint64_t width, std::uint64_t height) {
-    return std::to_string(width) + " x " + std::to_string(height) + " texels";
+    return size_text(width, height) + " texels";
 }
 
 void check_sides(const ExrFile& file, const ExrPart& part) {

@@ -112,8 +112,7 @@ class Mesher {
                              " m is not above the precision of the coordinates, " +
                              number(kLeastInPrecisions * precision_.plane) +
                              " m; where they are more precise, --weld says so");
-        constexpr double kMostPatches = 1e8;  // some 20 GB
-        if (total_area(scene_) > kMostPatches * size * size)
+        if (total_area(scene_) > kMostMeshPatches * size * size)
             throw InputError(scene_.file + ": " + what + " size " + number(size) +
                              " m is too small: there would be more than 100 million " + plural);
     }
@@ -433,6 +432,14 @@ Mesh split_mesh(const Scene& scene, const MeshSettings& settings, const Mesh& me
                 const Splits& splits) {
     return meshing::Mesher(scene, settings, meshing::depths_of(mesh, settings.split_levels, splits))
         .run();
+}
+
+double least_patches(const Scene& scene, const MeshSettings& settings) {
+    constexpr double kUncut = std::numeric_limits<double>::infinity();
+    const double patch = settings.patch_size > 0 ? settings.patch_size : default_patch_size(scene);
+    const double element = settings.element_size > 0 ? settings.element_size : kUncut;
+    const double size = std::min(patch, element);
+    return meshing::total_area(scene) / (size * size);
 }
 
 // 3,000 cells' worth of area: with its borders a Cornell box gets some 3,300 patches.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct GltfFile {
     const InputFile& file;
     Json json;
     tinygltf::Model model;
+    std::set<std::filesystem::path> side_files = {};  ///< that were read besides `file`
 };
 
 /// Throws InputError. Every index of the result is in range, every bufferView inside its buffer.

@@ -8,6 +8,8 @@
 
 #include <stb/stb_image.h>
 
+#include "scene/short_text.h"
+
 namespace hemirad {
 namespace {
 
@@ -91,7 +93,7 @@ std::uint64_t check_pixels(const InputFile& file, const std::string& path,
     const std::uint64_t most = std::min(kMostPixels, kMostPixelBytes / (is_deep(image) ? 8 : 4));
     if (count <= most) return count;
     fail(file, path,
-         "is " + std::to_string(width) + " x " + std::to_string(height) +
+         "is " + size_text(std::uint64_t(width), std::uint64_t(height)) +
              " pixels, more than the " + std::to_string(most) + " that are read");
 }
 

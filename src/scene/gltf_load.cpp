@@ -2,6 +2,7 @@
 #include <cstring>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "scene/gltf_file.h"
 
@@ -191,9 +192,7 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
     return true;
 }
 
-bool load_model(const InputFile& file, tinygltf::Model& model, std::string& error) {
-    Folder folder{file.path.parent_path()};
-    if (folder.path.empty()) folder.path = ".";
+bool load_model(const InputFile& file, tinygltf::Model& model, Folder& folder, std::string& error) {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keep_encoded, nullptr);
     loader.SetFsCallbacks({may_read, keep_path, read_whole, nullptr, &folder});
@@ -214,14 +213,17 @@ GltfFile load_gltf(const InputFile& file) {
     if (file.bytes.size() > UINT32_MAX) fail(file, "glTF", "files above 4 GiB are not read");
     GltfFile gltf{file, parse_json(file), {}};
     check_gltf(file, gltf.json);
+    Folder folder{file.path.parent_path()};
+    if (folder.path.empty()) folder.path = ".";
     std::string error;
     bool loaded = false;
     try {
-        loaded = load_model(file, gltf.model, error);
+        loaded = load_model(file, gltf.model, folder, error);
     } catch (const std::exception& exception) {  // of tinygltf's at() and of its JSON
         error = exception.what();
     }
     if (!loaded) fail(file, "glTF", error.empty() ? "cannot be read" : one_line(error));
+    gltf.side_files = std::move(folder.read);
     return gltf;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "scene/short_text.h"
+
 namespace hemirad::meshing {
 namespace {
 
@@ -16,9 +18,9 @@ std::string warning(const Scene& scene, double limit, const std::vector<std::siz
     std::ostringstream line;
     line << scene.file << ": reflectance limited to " << limit << " in material";
     if (limited.size() > 1) line << 's';
-    for (std::size_t i = 0; i < std::min(limited.size(), kNamed); ++i)
-        line << (i ? ", " : " ") << name_of(scene, limited[i]);
-    if (limited.size() > kNamed) line << " and " << limited.size() - kNamed << " more";
+    line << ' ' << names_in_short(limited.size(), kNamed, [&](std::size_t i) {
+        return name_of(scene, limited[i]);
+    });
     return line.str();
 }
 

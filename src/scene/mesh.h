@@ -151,6 +151,13 @@ struct MeshSettings {
     double weld = 0;  ///< m; vertices closer than this are one; 0: as precise as the scene is
 };
 
+/// More patches than build_mesh() makes.
+inline constexpr double kMostMeshPatches = 1e8;  // some 20 GB
+
+/// So many patches at least will build_mesh() make, since none is larger than its size squared;
+/// where faces repeat others, which then are dropped, fewer.
+double least_patches(const Scene& scene, const MeshSettings& settings);
+
 /// Cuts a scene into patches: welds, drops degenerate and duplicate faces (with warnings that give
 /// coordinates), finds surfaces, lays the grid, cuts along the edges of others that lie on them
 /// (where a block stands on a floor, no patch lies partly under it; not with an infinite patch

@@ -13,6 +13,7 @@
 #include "scene/gltf_nodes.h"
 #include "scene/input_file.h"
 #include "scene/quantum.h"
+#include "scene/short_text.h"
 
 namespace hemirad {
 namespace {
@@ -417,12 +418,12 @@ std::optional<std::string> punctual_light(const GltfFile& gltf, std::size_t node
 void warn_of_lights(Builder& builder, const std::vector<PlacedNode>& nodes) {
     constexpr std::uint32_t kNamed = 3;
     std::uint32_t& count = builder.scene.lights_not_taken;
-    std::string names;
+    std::vector<std::string> first;
     for (const PlacedNode& node : nodes)
         if (const auto name = punctual_light(builder.gltf, node.node); name && count++ < kNamed)
-            names += (names.empty() ? "" : ", ") + in_quotes(*name);
+            first.push_back(in_quotes(*name));
     if (count == 0) return;
-    if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+    const auto names = names_in_short(count, kNamed, [&](std::size_t i) { return first[i]; });
     warn(builder.scene, "KHR_lights_punctual",
          (count == 1 ? "a light (" : std::to_string(count) + " lights (") + names +
              (count == 1 ? ") is" : ") are") + " not taken: light comes from emissive faces");
@@ -434,6 +435,7 @@ Scene read_gltf(const InputFile& file) {
     const GltfFile gltf = load_gltf(file);
     Builder builder{gltf};
     builder.scene.file = file.name;
+    builder.scene.side_files.assign(gltf.side_files.begin(), gltf.side_files.end());
     read_gltf_materials(gltf, builder.scene);
     const auto nodes = place_nodes(gltf);
     check_placed(gltf, nodes);

@@ -112,6 +112,19 @@ void set_group(ObjFile& obj, const char** names, int count) {
     check_name(obj.file, "group", obj.group);
 }
 
+/// They are not read, but the scene's: relative to the library.
+void note_textures(ObjFile& obj, const std::filesystem::path& library,
+                   const tinyobj::material_t& material) {
+    for (const auto* name :
+         {&material.ambient_texname, &material.diffuse_texname, &material.specular_texname,
+          &material.specular_highlight_texname, &material.bump_texname,
+          &material.displacement_texname, &material.alpha_texname, &material.reflection_texname,
+          &material.roughness_texname, &material.metallic_texname, &material.sheen_texname,
+          &material.emissive_texname, &material.normal_texname})
+        if (!name->empty())
+            obj.scene.side_files.push_back((library.parent_path() / trimmed(*name)).string());
+}
+
 void read_library(ObjFile& obj, const std::string& reference, const std::filesystem::path& path) {
     const InputFile file = read_input_file(path);
     const std::string text = unfold_lines(file.bytes);
@@ -123,6 +136,8 @@ void read_library(ObjFile& obj, const std::string& reference, const std::filesys
     std::string warning, error;
     tinyobj::LoadMtl(&indices, &materials, &stream, &warning, &error);
     if (!error.empty()) fail(obj.file, "mtllib " + in_quotes(reference), printable(error));
+    obj.scene.side_files.push_back(path.string());
+    for (const auto& material : materials) note_textures(obj, path, material);
     for (const auto& [name, index] : indices) {
         const std::string key = trimmed(name);  // empty: lines before any newmtl
         if (!key.empty()) obj.library.emplace(key, materials[static_cast<std::size_t>(index)]);

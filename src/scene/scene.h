@@ -41,6 +41,8 @@ struct Scene {
     double quantum = 0;
     std::uint32_t lights_not_taken = 0;  ///< glTF's points, spots and suns, of KHR_lights_punctual
     std::vector<std::string> warnings;   ///< one line each, for people
+    /// Paths of what belongs to the scene besides `file`: what it was read from, pictures it names.
+    std::vector<std::string> side_files = {};
 };
 
 }  // namespace hemirad

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <set>
 
 #include "errors.h"
 #include "lightmap/atlas_file.h"
 #include "lightmap/read_exr.h"
 #include "scene/gltf_file.h"
 #include "scene/read_scene.h"
+#include "scene/short_text.h"
 
 namespace hemirad {
 namespace {
@@ -64,23 +64,6 @@ void require_uvs(const fs::path& gltf, const Scene& scene) {
     fail(gltf, "is not solved; hemirad solve SCENE -o SOLVED.glb makes a scene with its light");
 }
 
-/// After which shots pictures were kept.
-std::set<std::uint64_t> shots_kept(const fs::path& exr) {
-    std::set<std::uint64_t> found;
-    const std::string prefix = exr.stem().string() + "-";
-    const fs::path folder = exr.has_parent_path() ? exr.parent_path() : ".";
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const std::string stem = entry.path().stem().string();
-        if (entry.path().extension() != exr.extension() || !stem.starts_with(prefix)) continue;
-        const char *first = stem.data() + prefix.size(), *last = stem.data() + stem.size();
-        std::uint64_t shots = 0;
-        const auto [rest, fault] = std::from_chars(first, last, shots);
-        if (fault == std::errc() && rest == last) found.insert(shots);
-    }
-    return found;
-}
-
 struct ImageSize {
     std::uint32_t width = 0, height = 0;
 };
@@ -103,10 +86,6 @@ std::optional<ImageSize> size_in_gltf(const GltfFile& gltf, std::uint32_t atlas)
         return value;
     };
     return ImageSize{word(kBegin.size()), word(kBegin.size() + 4)};
-}
-
-std::string size_text(std::uint32_t width, std::uint32_t height) {
-    return std::to_string(width) + " x " + std::to_string(height);
 }
 
 /// The same charts in another size are other charts: UVs would lead to foreign texels.
@@ -171,9 +150,26 @@ LitScene read_lit_scene(const fs::path& gltf, const std::optional<fs::path>& exr
     for (std::uint32_t atlas = 0; atlas < count; ++atlas) {
         const fs::path exr_of_atlas = atlas_file(lit.exr, atlas);
         add_lightmap(lit, exr_of_atlas);
+        lit.scene.side_files.push_back(exr_of_atlas.string());
         if (is_ours) require_size(loaded, atlas, exr_of_atlas, lit.lightmaps.back());
     }
     return lit;
+}
+
+std::set<std::uint64_t> shots_kept(const fs::path& exr) {
+    std::set<std::uint64_t> found;
+    const std::string prefix = exr.stem().string() + "-";
+    const fs::path folder = exr.has_parent_path() ? exr.parent_path() : ".";
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string stem = entry.path().stem().string();
+        if (entry.path().extension() != exr.extension() || !stem.starts_with(prefix)) continue;
+        const char *first = stem.data() + prefix.size(), *last = stem.data() + stem.size();
+        std::uint64_t shots = 0;
+        const auto [rest, fault] = std::from_chars(first, last, shots);
+        if (fault == std::errc() && rest == last) found.insert(shots);
+    }
+    return found;
 }
 
 fs::path snapshot_file(const fs::path& exr, std::uint64_t shots) {

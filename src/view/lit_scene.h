@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct Snapshot {
 
 /// The file in which the picture after so many shots is kept: NAME-SHOTS.exr beside NAME.exr.
 std::filesystem::path snapshot_file(const std::filesystem::path& exr, std::uint64_t shots);
+
+/// After which shots there is such a file, whatever it holds.
+std::set<std::uint64_t> shots_kept(const std::filesystem::path& exr);
 
 /// Those that lie beside the scene's lightmaps and are of the same size, scene and settings, by
 /// shots. Others are left out, and so is what cannot be read or lacks an atlas.

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The program as its users meet it: exit codes, messages, files. HEMIRAD names the binary."""
+import base64
 import hashlib
 import json
 import os
@@ -331,6 +332,80 @@ class BadOutputs(CommandLine):
         (self.folder / "a.csv").unlink()
         self.assert_refused(result, "hemirad: a.csv: ")
         self.assertEqual(before, (self.folder / "scene.obj").read_bytes())
+
+
+class SideFiles(CommandLine):
+    """No output replaces a file that belongs to the scene, however its name is spelled."""
+
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
+
+    def assert_kept(self, scene, *arguments, command="solve", named=None):
+        before = self.files()
+        result = self.run_hemirad(command, scene, *arguments)
+        line = f"hemirad: {named or arguments[-1]}: would overwrite a file of the scene\n"
+        self.assertEqual((1, line), (result.returncode, result.stderr))
+        self.assertEqual(before, self.files())
+
+    def link(self, name, target):
+        (self.folder / name).symlink_to(target)
+        return name
+
+    def write_textured_obj(self, texture="wood.png"):
+        self.write("scene.mtl", scenes.MATERIALS + f"map_Kd {texture}\n")
+        self.write(texture, "wood")
+
+    def write_textured_gltf(self):
+        document = json.loads(scenes.gltf())
+        uri = document["buffers"][0]["uri"]
+        self.write("sheet.bin", base64.b64decode(uri.partition(",")[2]))
+        self.write("old wood.png", "wood")
+        self.write("sheet.gltf", scenes.gltf(
+            buffers=[{**document["buffers"][0], "uri": "sheet.bin"}],
+            images=[{"uri": "old%20wood.png"}]))
+
+    def test_the_materials_of_an_obj(self):
+        for option, name in (("--faces", "a.csv"), ("--report", "a.json"), ("--preview", "a.png"),
+                             ("-o", "a.exr"), ("--gltf", "a.glb")):
+            with self.subTest(option=option):
+                self.assert_kept("scene.obj", option, self.link(name, "scene.mtl"))
+                (self.folder / name).unlink()
+
+    def test_the_textures_that_materials_name(self):
+        self.write_textured_obj()
+        (self.folder / "folder").mkdir()
+        for name in ("wood.png", "./wood.png", "folder/../wood.png", str(self.folder / "wood.png"),
+                     self.link("a.png", "wood.png"), self.link("folder/b.png", "../wood.png")):
+            with self.subTest(name=name):
+                self.assert_kept("scene.obj", "--preview", name)
+                self.assert_kept("folder/../scene.obj", "--preview", name)
+
+    def test_the_buffers_and_pictures_of_a_gltf(self):
+        self.write_textured_gltf()
+        self.assert_kept("sheet.gltf", "--preview", "old wood.png")
+        self.assert_kept("sheet.gltf", "--preview", self.link("a.png", "old wood.png"))
+        self.assert_kept("sheet.gltf", "--faces", self.link("a.csv", "sheet.bin"))
+
+    def test_a_picture_that_a_kept_snapshot_would_replace(self):
+        self.write_textured_obj("sky-100.exr")
+        self.assert_kept("scene.obj", "--snapshot-every", "50", "--keep-snapshots", "-o",
+                         "sky.exr", named="sky-100.exr")
+
+    def test_checkpoints_replace_none_either(self):
+        result = self.solve("--checkpoint", "scene.mtl")
+        self.assertEqual(1, result.returncode, result.stderr)
+        self.assertEqual(scenes.MATERIALS, (self.folder / "scene.mtl").read_text())
+
+    def test_other_commands_keep_them_too(self):
+        self.assert_kept("scene.obj", "-o", self.link("a.csv", "scene.mtl"), command="formfactors")
+        self.assert_done(self.solve("-o", "solved.glb"))
+        self.assert_kept("solved.glb", "--eye", "1,1,1", "-o", "solved.exr", command="render")
+        self.assert_kept("solved.glb", "-o", self.link("a.html", "solved.exr"), command="view")
+
+    def test_a_texture_that_is_missing_is_no_file_of_the_scene(self):
+        self.write_textured_obj()
+        (self.folder / "wood.png").unlink()
+        self.assert_done(self.solve("--max-shots", "1", "--preview", "wood.png"))
 
 
 class Solve(CommandLine):

@@ -85,6 +85,28 @@ class Memory(LimitsTest):
                       self.refused("--memory-limit", "0.3G", "--texel-size", "0.0005"))
         self.assertIn("--patch-size", self.refused("--memory-limit", "250M", "--row-memory", "0"))
 
+    def test_a_mesh_too_large_is_refused_before_it_is_made(self):
+        for command in (("solve", "-o", "a.exr"), ("info",)):
+            result = self.run_hemirad(command[0], SCENES / "cornell.gltf", *command[1:],
+                                      "--patch-size", "0.0005", "--memory-limit", "1G", timeout=10)
+            self.assertEqual(1, result.returncode)
+            self.assertRegex(result.stderr, r"^cornell\.gltf: needs about [\d.]+ GiB, --memory-limit "
+                                            r"is 1\.0 GiB; [\d.]+ GiB for \d+ patches: raise "
+                                            r"--patch-size\n$")
+        self.assertIn("raise --element-size", self.refused("--element-size", "0.0005",
+                                                           "--memory-limit", "1G"))
+
+    def test_info_reckons_with_all_that_takes_memory(self):
+        options = ("--texel-size", "0.005", "--row-memory", "0", "--memory-limit", "50M")
+        told = []
+        for more in ((), ("--preview", "a.png"), ("--snapshot-every", "9")):
+            info = self.run_hemirad("info", SCENES / "cornell.gltf", *options, *more)
+            self.assert_done(info)
+            told.append(float(re.search(r"^memory +about (\d+) MiB", info.stdout, re.M).group(1)))
+        self.assertGreater(told[1], told[0])
+        self.assertGreater(told[2], told[0])
+        self.assertFalse((self.folder / "a.png").exists())
+
     def test_what_fits_the_limit_is_solved(self):
         self.report_of("cornell.gltf", "--quality", "draft", "--max-shots", "1", "--memory-limit",
                        "1.5G")

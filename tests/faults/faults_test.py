@@ -47,6 +47,14 @@ class Injected(Faults):
         for name in names:
             self.assert_harmless(faults.EVERYTHING, before, name, name + ":1+", {2})
 
+    def test_only_what_is_timed_is_waited_for(self):
+        """What is read is waited for anyway; seconds are foretold, too."""
+        arguments = [argument for argument in faults.QUICK if argument != "--quiet"]
+        done = faults.run(arguments, self.folder)
+        self.assertEqual((0, 0), (done.code, done.calls.get("clFinish", 0)))
+        done = faults.run([*arguments, "--report", "r.json"], self.folder)
+        self.assertGreater(done.calls["clFinish"], 0)
+
     def test_every_call_for_a_file_may_fail(self):
         closed = self.run_whole(faults.QUICK).calls["fclose"]  # the last of which is written
         before = faults.files(self.folder)
