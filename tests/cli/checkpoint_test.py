@@ -143,6 +143,14 @@ class BadCheckpoints(Checkpoints):
         self.assertEqual(before, self.bytes_of("scene.mtl"))
         self.assert_refused(self.solve("--checkpoint", "scene.obj"), "hemirad: scene.obj: ")
 
+    def test_that_an_output_would_overwrite(self):
+        self.write("c.ckpt", "hours of work")
+        (self.folder / "a.exr").symlink_to("c.ckpt")
+        result = self.solve("--resume", "c.ckpt", "--checkpoint", "new.ckpt", "-o", "a.exr")
+        self.assertEqual((1, "hemirad: a.exr: would overwrite the checkpoint of --resume\n"),
+                         (result.returncode, result.stderr))
+        self.assertEqual(b"hours of work", self.bytes_of("c.ckpt"))
+
     def test_with_options_that_do_not_go_together(self):
         for arguments in (("--checkpoint", "c.ckpt", "--target-error", "0.1"),
                           ("--resume", "c.ckpt", "--target-error", "0.1"),
