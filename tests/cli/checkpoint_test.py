@@ -74,6 +74,15 @@ class Resume(Checkpoints):
                                     "100"))
         self.assertEqual(self.bytes_of("b.exr"), self.bytes_of("a.exr"))
 
+    def test_is_none_where_the_time_is_over_before_the_second_split(self):
+        """Less than a solve takes to begin, more than it then takes to end."""
+        self.write("scene.obj", scenes.obj(faces=scenes.FACES + "usemtl white\nf 1 2 6 5\n"))
+        result = self.solve("--split", "2", "--backfaces", "cull", "--checkpoint", "c.ckpt",
+                            "--time-limit", "0.03")
+        self.assert_done(result)
+        self.assertIn("c.ckpt: not written: stopped before --split was done", result.stderr)
+        self.assertFalse((self.folder / "c.ckpt").exists())
+
     def test_counts_what_was_done_again_as_one(self):
         self.stop_early()
         first = self.bytes_of("c.ckpt")
