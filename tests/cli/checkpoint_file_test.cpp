@@ -24,6 +24,8 @@ Checkpoint checkpoint() {
     return {identity(), 1e-3, {42, 7, -1, 2, {0.5f, 0.25f}, {1, 2, 3}, {4, 5, 6}, {7, -0.0f}}};
 }
 
+constexpr std::size_t kDigits = 64;  // of the checksum at its end
+
 class CheckpointFile : public testing::Test {
   protected:
     void TearDown() override { fs::remove(file_); }
@@ -115,6 +117,20 @@ TEST_F(CheckpointFile, IsRefusedWithAHeadLongerThanOurs) {
     put(body + sum.digits());
 
     EXPECT_EQ(refusal(), "no checkpoint that hemirad wrote: its second line has 65544 bytes");
+}
+
+TEST_F(CheckpointFile, IsRefusedWhereACountIsNone) {
+    for (const std::string count : {"-42", "4.2", "1e300", "\"42\""}) {
+        std::string body = written();
+        body.resize(body.size() - kDigits);
+        const std::string shots = "\"shots\":42";
+        body.replace(body.find(shots), shots.size(), "\"shots\":" + count);
+        Sha256 sum;
+        sum.add(body);
+        put(body + sum.digits());
+
+        EXPECT_EQ(refusal(), "no checkpoint that hemirad wrote: shots is not a count") << count;
+    }
 }
 
 TEST_F(CheckpointFile, ReplacesNothingButCheckpoints) {

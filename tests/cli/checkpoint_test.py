@@ -74,6 +74,15 @@ class Resume(Checkpoints):
                                     "100"))
         self.assertEqual(self.bytes_of("b.exr"), self.bytes_of("a.exr"))
 
+    def test_is_none_where_the_time_is_over_before_the_second_split(self):
+        """Less than a solve takes to begin, more than it then takes to end."""
+        self.write("scene.obj", scenes.obj(faces=scenes.FACES + "usemtl white\nf 1 2 6 5\n"))
+        result = self.solve("--split", "2", "--backfaces", "cull", "--checkpoint", "c.ckpt",
+                            "--time-limit", "0.03")
+        self.assert_done(result)
+        self.assertIn("c.ckpt: not written: stopped before --split was done", result.stderr)
+        self.assertFalse((self.folder / "c.ckpt").exists())
+
     def test_counts_what_was_done_again_as_one(self):
         self.stop_early()
         first = self.bytes_of("c.ckpt")
@@ -142,6 +151,14 @@ class BadCheckpoints(Checkpoints):
                             "hemirad: --checkpoint scene.mtl: would overwrite what is no checkpoint")
         self.assertEqual(before, self.bytes_of("scene.mtl"))
         self.assert_refused(self.solve("--checkpoint", "scene.obj"), "hemirad: scene.obj: ")
+
+    def test_that_an_output_would_overwrite(self):
+        self.write("c.ckpt", "hours of work")
+        (self.folder / "a.exr").symlink_to("c.ckpt")
+        result = self.solve("--resume", "c.ckpt", "--checkpoint", "new.ckpt", "-o", "a.exr")
+        self.assertEqual((1, "hemirad: a.exr: would overwrite the checkpoint of --resume\n"),
+                         (result.returncode, result.stderr))
+        self.assertEqual(b"hours of work", self.bytes_of("c.ckpt"))
 
     def test_with_options_that_do_not_go_together(self):
         for arguments in (("--checkpoint", "c.ckpt", "--target-error", "0.1"),

@@ -629,6 +629,13 @@ class Questions(CommandLine):
         self.assertIn("floor: 1 face, open, 1 back", blocked)
         self.assertIn("floor: 1 face, open, no backs", culled)
 
+    def test_info_without_a_lightmap_tells_the_rest(self):
+        self.write("scene.obj", scenes.obj(faces=scenes.FACES + "f 1 1 2\n"))
+        result = self.run_hemirad("info", "scene.obj", "--texel-size", "1e-9")
+        self.assert_done(result)
+        self.assertRegex(result.stdout, r"\nmemory       none, no lightmap: --texel-size 1e-0?9: the"
+                                        r" .*\nwarnings     1\n  scene\.obj: .*\n$")
+
     def test_info_solves_three_bands_where_colours_differ(self):
         self.write("scene.mtl", "newmtl white\nKd .1 .2 .3\nnewmtl lamp\nKe 1 1 1\n")
         self.assertIn("solved: 3", self.run_hemirad("info", "scene.obj").stdout)

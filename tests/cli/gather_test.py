@@ -3,6 +3,7 @@
 binary."""
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import unittest
@@ -105,8 +106,22 @@ class Gather(CommandLine):
                                   *QUICK[:-2], *endless, "--time-limit", "2")
         self.assertEqual(0, result.returncode, result.stderr)
         self.assertIn("--gather: stopped by --time-limit 2", result.stderr)
-        self.assertIsNone(json.loads((self.folder / "a.json").read_text())["gather"])
+        report = json.loads((self.folder / "a.json").read_text())
+        self.assertIsNone(report["gather"])
+        self.assertNotIn("gather", report["settings"])
         self.assertNotIn("--gather", Exr(self.folder / "a.exr").text("settings"))
+
+    def test_a_signal_leaves_the_gather_out_and_is_named(self):
+        process = self.solve_until("c.ckpt", "-o", "a.exr", "--report", "a.json", *QUICK[:-2],
+                                   "--gather", "2048", "--gather-error", "0", "--texel-size",
+                                   "0.01", "--checkpoint", "c.ckpt", "--checkpoint-every", "1")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(130, process.wait(60))
+        says = "--gather: stopped by a signal; the lightmap is that of the patches"
+        self.assertIn(says, process.stderr.read())
+        report = json.loads((self.folder / "a.json").read_text())
+        self.assertIn(says, report["warnings"])
+        self.assertNotIn("gather", report["settings"])
 
     def test_only_a_gathered_picture_names_it_in_its_settings(self):
         self.run_to("a.exr", *GATHER, "--snapshot-every", "2", "--keep-snapshots",

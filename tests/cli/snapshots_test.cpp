@@ -37,6 +37,16 @@ TEST(Snapshots, AreDueOncePerIntervalOfTime) {
     EXPECT_TRUE(snapshots.due({.seconds = 4.0}));
 }
 
+/// Such intervals have passed more often than an integer, or even a double, counts.
+TEST(Snapshots, OfTheShortestIntervalsAreDueWheneverAsked) {
+    for (const double interval : {1e-30, 1e-320}) {
+        Snapshots snapshots({.seconds = interval});
+
+        EXPECT_TRUE(snapshots.due({.seconds = 1}));
+        EXPECT_TRUE(snapshots.due({.seconds = 2}));
+    }
+}
+
 TEST(ShotClock, TakesTheMedianOfItsIntervals) {
     ShotClock clock;
     EXPECT_EQ(clock.median(), 0);

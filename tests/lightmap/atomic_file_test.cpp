@@ -86,6 +86,19 @@ TEST_F(AtomicFile, ASymbolicLinkStaysOne) {
     EXPECT_EQ(bytes_of(file("a.txt")), "whole");
 }
 
+TEST_F(AtomicFile, ASymbolicLinkToWhatIsNotThereYetStaysOne) {
+    fs::create_directory(file("there"));
+    fs::create_symlink("there/link", file("link"));
+    fs::create_symlink("a.txt", file("there/link"));
+
+    check_writable(file("link"));
+    write_atomically(file("link"), write_text);
+
+    EXPECT_TRUE(fs::is_symlink(file("link")));
+    EXPECT_TRUE(fs::is_symlink(file("there/link")));
+    EXPECT_EQ(bytes_of(file("there/a.txt")), "whole");
+}
+
 TEST_F(AtomicFile, AMissingFolderIsNamed) {
     EXPECT_EQ(failure_of(file("no/a.txt")),
               file("no/a.txt").string() + ": No such file or directory");

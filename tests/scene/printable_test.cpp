@@ -32,6 +32,8 @@ TEST(Printable, EscapesWhatIsNoUtf8) {
 TEST(Printable, EscapesWhatReversesOrSeparatesLines) {
     EXPECT_EQ(printable("a\u202etxt.jbo"), "a\\xe2\\x80\\xaetxt.jbo");
     EXPECT_EQ(printable("a\u2028b\u2066c"), "a\\xe2\\x80\\xa8b\\xe2\\x81\\xa6c");
+    EXPECT_EQ(printable("a\u061cb\u200ec\u200fd"), "a\\xd8\\x9cb\\xe2\\x80\\x8ec\\xe2\\x80\\x8fd");
+    EXPECT_EQ(printable("\u061b\u200d\u2010"), "\u061b\u200d\u2010");
     EXPECT_EQ(printable("\u2027\u202f\u2065\u206a"), "\u2027\u202f\u2065\u206a");  // beside them
 }
 
@@ -55,10 +57,12 @@ TEST(CsvField, LeavesNothingForASpreadsheetToCompute) {
     EXPECT_EQ(csv_field("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");
     EXPECT_EQ(csv_field("-cmd|' /C calc'!A0"), "'-cmd|' /C calc'!A0");
     EXPECT_EQ(csv_field("+HYPERLINK(A1)"), "'+HYPERLINK(A1)");
+    EXPECT_EQ(csv_field("+HYPERLINK(A1) (back)"), "'+HYPERLINK(A1) (back)");
 }
 
 TEST(CsvField, LeavesDirectionsAsTheyAre) {
     EXPECT_EQ(csv_field("+x"), "+x");
+    EXPECT_EQ(csv_field("+x (back)"), "+x (back)");
     EXPECT_EQ(csv_field("-z panel"), "-z panel");
     EXPECT_EQ(csv_field("a=1"), "a=1");
 }

@@ -149,6 +149,24 @@ TEST(Gather, HasTheSameBitsWhereTheListsHadNoRoom) {
     EXPECT_EQ(first, seen(kFineTiles));
 }
 
+/// In a large scene one takes a second.
+TEST(Gather, MayBeStoppedAfterTheFirstSalvo) {
+    const Mesh mesh = meshed(furnished_room(), 0.5);
+    const auto points = points_of(mesh);
+    ASSERT_GT(points.size(), 4 * kMostSalvo);
+    const auto device = mp1map::Device::open("");
+    Gather gather(mesh, roughly_lit(mesh), through(), device);
+    std::size_t gathered = 0;
+
+    const auto light = gather.irradiance(points, [&](std::size_t done) {
+        gathered += done;
+        return false;
+    });
+
+    EXPECT_EQ(light, std::nullopt);
+    EXPECT_LE(gathered, kMostSalvo);
+}
+
 TEST(Gather, APointHasTheSameBitsInAnyCompany) {
     const Mesh mesh = meshed(furnished_room(), 0.5);
     const Bands radiosity = roughly_lit(mesh);
