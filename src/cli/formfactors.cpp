@@ -97,7 +97,7 @@ Work prepare(const FormFactorsOptions& options) {
     Work work;
     work.scene = read_scene(options.scene);
     keep_side_files(work.scene, output_files(options));
-    require_memory_for_mesh(work.scene, options.mesh, {});
+    require_memory_for_mesh(work.scene, options.mesh, {}, options.device);
     work.mesh = build_mesh(work.scene, options.mesh);
     work.named = named_surfaces(work.scene, work.mesh);
     work.listed = options.per_patch ? single_patches(work.scene, work.mesh) : work.named;

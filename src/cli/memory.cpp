@@ -256,6 +256,17 @@ std::string advice_on(const MemoryEstimate& estimate, std::uint64_t limit) {
     return "; " + bytes_text(largest.bytes) + " for " + largest.name + ": " + largest.advice;
 }
 
+/// The arrays of a device, where that is a CPU. It is asked for, which takes half a second, where a
+/// mesh takes longer.
+std::uint64_t least_on_cpu(std::uint32_t patches, const std::string& name) {
+    constexpr std::uint32_t kMany = 1'000'000;
+    if (patches < kMany || mp1map::list_devices().empty()) return 0;
+    const auto device = mp1map::Device::open(name).summary();
+    if (!device.is_cpu) return 0;
+    return estimated_device_bytes(patches, 1, 3, 1, 16, FormFactorMode::count, 0,
+                                  mp1map::fit_pe_array(device, {}), 1, false);
+}
+
 /// Of what is told to need more than `limit`, or than is free.
 void require_free(const std::string& scene, const MemoryEstimate& estimate,
                   std::optional<std::uint64_t> limit) {
@@ -314,14 +325,14 @@ std::uint64_t peak_memory_bytes() {
 std::uint64_t available_memory() { return free_memory() + resident_bytes(); }
 
 void require_memory_for_mesh(const Scene& scene, const MeshSettings& settings,
-                             std::optional<std::uint64_t> limit) {
-    const double patches = least_patches(scene, settings);
-    if (!(patches < kMostMeshPatches)) return;
+                             std::optional<std::uint64_t> limit, const std::string& device) {
+    if (!(least_patches(scene, settings) < kMostMeshPatches)) return;
+    const auto patches = static_cast<std::uint32_t>(least_patches(scene, settings));
     const bool has_elements =
         settings.element_size > 0 && settings.element_size < settings.patch_size;
     MemoryEstimate estimate;
-    estimate.parts = {{counted(static_cast<std::uint64_t>(patches), "patch", "patches"),
-                       static_cast<std::uint64_t>(patches * (kMeshBytes + kUploadBytes)),
+    estimate.parts = {{counted(patches, "patch", "patches"),
+                       patches * (kMeshBytes + kUploadBytes) + least_on_cpu(patches, device),
                        has_elements ? "raise --element-size" : "raise --patch-size"}};
     require_free(scene.file, estimate, limit);
 }

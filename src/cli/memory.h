@@ -50,7 +50,7 @@ std::uint64_t available_memory();
 /// with their arrays for a device, need more than the limit, or, without one, than is free. What
 /// build_mesh() refuses is left to it.
 void require_memory_for_mesh(const Scene& scene, const MeshSettings& settings,
-                             std::optional<std::uint64_t> limit);
+                             std::optional<std::uint64_t> limit, const std::string& device);
 
 /// Throws InputError where a solve needs more than the limit, or more of the device than it has,
 /// with the numbers, the largest part and how to make it smaller.

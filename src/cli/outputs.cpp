@@ -153,7 +153,7 @@ void keep_side_files(const Scene& scene, const std::vector<fs::path>& files) {
                              ": would overwrite a file of the scene");
 }
 
-void keep_side_files(const Scene& scene, const SolveOptions& options) {
+void check_side_files(const SolveOptions& options, const Scene& scene) {
     keep_side_files(scene, all_files(options));
     keep_side_files(scene, snapshots_there(options));
 }

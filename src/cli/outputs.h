@@ -33,7 +33,7 @@ void check_distinct(const std::filesystem::path& scene,
 /// picture it names.
 void keep_side_files(const Scene& scene, const std::vector<std::filesystem::path>& files);
 /// The same of all that the options ask for, and of the kept snapshots that are there already.
-void keep_side_files(const Scene& scene, const SolveOptions& options);
+void check_side_files(const SolveOptions& options, const Scene& scene);
 
 /// Before the work begins: throws InputError where two outputs are one file, or one is the scene,
 /// or a name ends unfittingly; OutputError where one could not be written.

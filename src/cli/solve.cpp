@@ -62,21 +62,21 @@ Work prepare(SolveOptions& options) {
     Work work;
     if (options.resume) work.checkpoint = read_checkpoint(*options.resume);
     work.scene = read_scene(options.scene);
-    keep_side_files(work.scene, options);
+    check_side_files(options, work.scene);
     if (options.gltf) work.cameras = read_cameras(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(work.scene);
     if (options.mesh.element_size > options.mesh.patch_size)
         work.scene.warnings.push_back(
             "--element-size " + number_text(options.mesh.element_size) + " is above --patch-size " +
             number_text(options.mesh.patch_size) + ": a patch is its own element");
-    require_memory_for_mesh(work.scene, options.mesh, options.memory_limit);
+    require_memory_for_mesh(work.scene, options.mesh, options.memory_limit, options.device);
     work.mesh = build_mesh(work.scene, options.mesh);
     if (options.lit_backs_only) drop_dark_backs(work.mesh);
     work.layout = lay_out_charts(work.scene, work.mesh, options.charts);
     for (const auto& warning : work.layout.warnings) work.scene.warnings.push_back(warning);
     options.charts.texel_size = work.layout.texel_size;
     options.atlas_count = static_cast<std::uint32_t>(work.layout.atlases.size());
-    if (options.atlas_count > 1) check_outputs(options), keep_side_files(work.scene, options);
+    if (options.atlas_count > 1) check_outputs(options), check_side_files(options, work.scene);
     return work;
 }
 

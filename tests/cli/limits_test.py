@@ -97,12 +97,12 @@ class Memory(LimitsTest):
                                                            "--memory-limit", "1G"))
 
     def test_info_reckons_with_all_that_takes_memory(self):
-        options = ("--texel-size", "0.005", "--row-memory", "0", "--memory-limit", "50M")
+        options = ("--texel-size", "0.002", "--row-memory", "0", "--memory-limit", "50M")
         told = []
         for more in ((), ("--preview", "a.png"), ("--snapshot-every", "9")):
             info = self.run_hemirad("info", SCENES / "cornell.gltf", *options, *more)
             self.assert_done(info)
-            told.append(float(re.search(r"^memory +about (\d+) MiB", info.stdout, re.M).group(1)))
+            told.append(float(re.search(r"^memory +about ([\d.]+) MiB", info.stdout, re.M).group(1)))
         self.assertGreater(told[1], told[0])
         self.assertGreater(told[2], told[0])
         self.assertFalse((self.folder / "a.png").exists())
