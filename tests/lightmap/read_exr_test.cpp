@@ -65,6 +65,23 @@ void set_last_texel(std::string& exr, std::int32_t x, std::int32_t y) {
 
 TEST_F(ReadExr, TakesWhatIsWritten) { EXPECT_EQ(fault_of(small_exr()), ""); }
 
+/// tools/make-corpus has them of one picture.
+TEST_F(ReadExr, TakesWhatOtherProgramsWrite) {
+    const auto green = [](const std::string& kind) {
+        const auto file = std::filesystem::path(HEMI_CORPUS) / "exr" / (kind + ".exr");
+        return read_exr(file, {"G"}).lightmap.values[0];
+    };
+    const auto picture = green("half");
+
+    for (const char* kind : {"none", "rle", "piz", "pxr24", "mipmap", "ripmap", "parts"})
+        EXPECT_EQ(green(kind), picture) << kind;
+    for (const char* kind : {"b44", "dwaa", "dwab"}) {
+        const auto nearly = green(kind);
+        for (std::size_t i = 0; i < picture.size(); ++i)
+            EXPECT_NEAR(nearly[i], picture[i], 0.05) << kind;
+    }
+}
+
 TEST_F(ReadExr, RefusesMoreTexelsThanItsBytesCanHold) {
     std::string exr = small_exr();
     set_last_texel(exr, 16383, 15);
