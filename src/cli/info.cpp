@@ -217,14 +217,9 @@ void print_cost(std::ostream& out, const Mesh& mesh, const ChartLayout& layout,
 int print_info(SolveOptions options, std::ostream& out) {
     const auto scene = read_scene(options.scene);
     if (options.mesh.patch_size == 0) options.mesh.patch_size = default_patch_size(scene);
-<<<<<<< ours
-    require_memory_for_mesh(scene, options.mesh, options.memory_limit);
+    require_memory_for_mesh(scene, options.mesh, options.memory_limit, options.device);
     auto mesh = build_mesh(scene, options.mesh);
     if (options.lit_backs_only) drop_dark_backs(mesh);
-=======
-    require_memory_for_mesh(scene, options.mesh, options.memory_limit, options.device);
-    const auto mesh = build_mesh(scene, options.mesh);
->>>>>>> theirs
     if (const auto fault = uncountable_light(mesh)) throw InputError(scene.file + ": " + *fault);
     print_contents(out, scene, mesh, options.mesh);
     print_parts(out, mesh, options.mesh.backfaces);
