@@ -2,6 +2,7 @@
 #include <cstring>
 #include <fstream>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "scene/gltf_file.h"
@@ -157,8 +158,9 @@ bool is_in_folder(const std::string& path, const std::filesystem::path& folder) 
 }
 
 bool may_read(const std::string& path, void* folder) {
+    std::error_code no_name;  // of a file: too long
     return is_in_folder(path, static_cast<const Folder*>(folder)->path) &&
-           std::filesystem::is_regular_file(path);
+           std::filesystem::is_regular_file(path, no_name);
 }
 
 bool is_read_rarely(Folder& folder, const std::filesystem::path& path) {

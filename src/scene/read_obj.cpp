@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "scene/input_file.h"
@@ -155,7 +156,8 @@ class LibraryReader : public tinyobj::MaterialReader {
         const auto path = resolve_reference(obj_.file, trimmed(reference));
         if (!path) fail(obj_.file, element, "must be a file in the scene's folder");
         if (!obj_.libraries.insert(*path).second) return false;
-        if (std::filesystem::exists(*path)) {
+        std::error_code no_name;  // of a file: too long
+        if (std::filesystem::exists(*path, no_name)) {
             read_library(obj_, reference, *path);
         } else {
             warn(obj_.scene, element, "does not exist");

@@ -404,6 +404,13 @@ TEST_F(ReadGltf, DoesNotMindAnImageThatNoMaterialShows) {
     EXPECT_EQ(folder.error_of(gltf), "");
 }
 
+TEST_F(ReadGltf, SaysOfABufferWhoseNameNoFileCanHaveThatItCannotBeRead) {
+    Json gltf = triangle_gltf();
+    gltf["buffers"][0]["uri"] = std::string(256, 'a');
+
+    EXPECT_THAT(folder.error_of(gltf), Not(AnyOf(IsEmpty(), HasSubstr("filesystem error"))));
+}
+
 TEST_F(ReadGltf, TakesBandsFromExtrasInOrderOfAppearance) {
     Json gltf = triangle_gltf(
         {{"name", "leaf"},

@@ -123,6 +123,14 @@ TEST_F(ReadObj, WarnsOfAMissingLibraryAndTakesGrey) {
                             "stands in"));
 }
 
+TEST_F(ReadObj, WarnsOfALibraryWhoseNameNoFileCanHave) {
+    const std::string name(256, 'a');
+
+    const Scene scene = folder.read("a.obj", "mtllib " + name + "\n" + kSquare + "f 1 2 3\n");
+
+    EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("mtllib"), HasSubstr("does not exist"))));
+}
+
 TEST_F(ReadObj, ReadsALibraryOnceHoweverOftenItIsNamed) {
     const Scene scene = folder.read(
         "a.obj", "mtllib no.mtl ./no.mtl\nmtllib b/../no.mtl\n" + kSquare + "f 1 2 3\n");
