@@ -2,6 +2,7 @@
 // salvo, the most energetic ones of so many blocks. Closes the books of the shots that were just made:
 // shots, escaped flux, closure, convergence.
 #include "progress.clh"
+#include "row_pool.clh"
 #include "shared.h"
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -36,17 +37,19 @@ static void close_counts(__global Shot* books, __global Shot* shot, __global int
 }
 
 // The first rows are kept: who has the most flux shoots first and most often.
-static void keep_row(__global Shot* books, const __global Shot* shot, int row_capacity,
+// Of a salvo that found the memory full, none: which rows are whole depends on which PE came first.
+static void keep_row(__global Shot* books, const __global Shot* shot, const __global RowPool* pool,
                      __global int* row_of, __global float* row_escaped) {
-    row_escaped[shot->row] = shot->escaped_fraction;
-    if (shot->row >= row_capacity) return;
-    row_of[shot->shooter] = shot->row + 1;
+    row_escaped[shot->shooter] = shot->escaped_fraction;
+    if (shot->row == 0 || is_full(pool)) return;
+    row_of[shot->shooter] = shot->row;
     ++books->rows_kept;
 }
 
 static void close_salvo(__global Shot* salvo, __global int* proxel_counts, int stride,
-                        int disk_proxels, const __global float* shot_flux, int row_capacity,
-                        __global int* row_of, __global float* row_escaped,
+                        int disk_proxels, const __global float* shot_flux,
+                        const __global RowPool* pool, __global int* row_of,
+                        __global float* row_escaped,
                         __global float* escaped, int counts_shots, __global uint* shots_of) {
     int station = 0;
     for (int member = 0; member < MEMBERS; ++member) {
@@ -56,12 +59,12 @@ static void close_salvo(__global Shot* salvo, __global int* proxel_counts, int s
             close_counts(salvo, shot,
                          proxel_counts + station++ * (stride + kCountsGap) + stride,
                          disk_proxels);
-            keep_row(salvo, shot, row_capacity, row_of, row_escaped);
+            keep_row(salvo, shot, pool, row_of, row_escaped);
         }
         if (shot->is_ahead) continue;
         for (int band = 0; band < BANDS; ++band)
             add_escaped(escaped + band, escaped + BANDS + band,
-                        shot_flux[member * BANDS + band] * row_escaped[shot->row]);
+                        shot_flux[member * BANDS + band] * row_escaped[shot->shooter]);
         ++salvo->shots;
         if (counts_shots) ++shots_of[shot->shooter];
         salvo->repeated_shots += shot->row_known;
@@ -74,21 +77,22 @@ static bool shoots_before(BlockSummary a, BlockSummary b) {
     return a.energy > b.energy || (a.energy == b.energy && a.shooter < b.shooter);
 }
 
-// A known row makes the shot without further hemispheres; a row that is not kept goes behind those
-// that are. Returns how many rows are kept, or promised to be.
-static int enlist(__global Shot* salvo, int member, int shooter, int row_capacity,
-                  const __global int* row_of, int rows) {
-    __global Shot* shot = salvo + member;
-    const int known = row_of[shooter];
+// A known row makes the shot without further hemispheres; a new one begins where memory is left.
+// Returns whether it is new.
+static bool enlist(__global Shot* shot, int shooter, __global RowPool* pool, int stride,
+                   const __global int* row_of) {
+    const uint units = directory_units(stride);
     shot->shooter = shooter;
-    shot->row_known = known > 0;
-    shot->row = known > 0             ? known - 1
-                : rows < row_capacity ? rows
-                                      : row_capacity + member;
+    shot->row = row_of[shooter];
+    shot->row_known = shot->row != 0;
     shot->part = shot->row_known;
     shot->part_count = 1;
     shot->is_done = shot->is_ahead = 0;
-    return rows + (known == 0);
+    if (!shot->row_known && has_room(pool, units)) {
+        shot->row = pool->taken;
+        pool->taken += units;
+    }
+    return !shot->row_known;
 }
 
 // Behind the last of a salvo: a shot by a known row, at nothing.
@@ -105,10 +109,9 @@ static void leave_out(__global Shot* shot) {
 #define kLeastShare 0.5f
 #define kLeastShareAhead 0.25f
 static void aim_salvo(__global Shot* salvo, const BlockSummary* best,
-                      const __global float* unshot, int shooter_stride, int row_capacity,
-                      const __global int* row_of, __global float* shot_flux) {
-    const int kept = salvo->rows_kept;
-    int rows = kept, size = 0;
+                      const __global float* unshot, int shooter_stride, __global RowPool* pool,
+                      int stride, const __global int* row_of, __global float* shot_flux) {
+    int looking = 0, size = 0;
     for (; size < SALVO; ++size) {
         const BlockSummary next = best[size];
         if (size > 0 && (next.energy < kLeastShare * best->energy ||
@@ -116,14 +119,15 @@ static void aim_salvo(__global Shot* salvo, const BlockSummary* best,
             break;
         for (int band = 0; band < BANDS; ++band)
             shot_flux[size * BANDS + band] = unshot[band * shooter_stride + next.shooter];
-        rows = enlist(salvo, size, next.shooter, row_capacity, row_of, rows);
+        looking += enlist(salvo + size, next.shooter, pool, stride, row_of);
     }
-    const int end = rows > kept ? min(kept + SALVO, row_capacity) : 0;
-    for (int rank = size; rank < RANKS && rows < end; ++rank) {
+    const int stations = looking > 0 ? SALVO : 0;
+    for (int rank = size; rank < RANKS && looking < stations; ++rank) {
         const BlockSummary next = best[rank];
         if (next.energy < kLeastShareAhead * best->energy) break;
         if (row_of[next.shooter] != 0) continue;
-        rows = enlist(salvo, size, next.shooter, row_capacity, row_of, rows);
+        if (!has_room(pool, directory_units(stride))) break;
+        looking += enlist(salvo + size, next.shooter, pool, stride, row_of);
         salvo[size++].is_ahead = 1;
     }
     for (; size < MEMBERS; ++size) leave_out(salvo + size);
@@ -181,8 +185,8 @@ __kernel void choose_shooter(__global Shot* salvo, const __global BlockSummary* 
                              const __global float* unshot, int shooter_stride,
                              const __global float* band_weight, float tolerance, int disk_proxels,
                              __global int* proxel_counts, int stride, __global float* escaped,
-                             __global float* shot_flux, int row_capacity, __global int* row_of,
-                             __global float* row_escaped, int counts_shots,
+                             __global float* shot_flux, __global RowPool* pool,
+                             __global int* row_of, __global float* row_escaped, int counts_shots,
                              __global uint* shots_of) {
     __local BlockSummary best[REDUCE_PES * RANKS];
     __local float left[REDUCE_PES * BANDS];
@@ -198,7 +202,7 @@ __kernel void choose_shooter(__global Shot* salvo, const __global BlockSummary* 
 
     // No work-item may leave before a barrier, see prefix_sum.cl.
     if (pe == 0 && is_shooting(salvo)) {
-        close_salvo(salvo, proxel_counts, stride, disk_proxels, shot_flux, row_capacity, row_of,
+        close_salvo(salvo, proxel_counts, stride, disk_proxels, shot_flux, pool, row_of,
                     row_escaped, escaped, counts_shots, shots_of);
         for (int other = 1; other < REDUCE_PES; ++other)
             for (int band = 0; band < BANDS; ++band) left[band] += left[other * BANDS + band];
@@ -206,7 +210,7 @@ __kernel void choose_shooter(__global Shot* salvo, const __global BlockSummary* 
         BlockSummary ranked[RANKS];
         merge_ranks(best, ranked);
         const int status = next_status(salvo, ranked[0].energy, tolerance);
-        aim_salvo(salvo, ranked, unshot, shooter_stride, row_capacity, row_of, shot_flux);
+        aim_salvo(salvo, ranked, unshot, shooter_stride, pool, stride, row_of, shot_flux);
         for (int member = 0; member < MEMBERS; ++member) salvo[member].status = status;
     }
 }

@@ -59,7 +59,8 @@ typedef struct {
     int32_t shooter;            // negative: none, as behind the last of a smaller salvo
     uint32_t part, part_count;  // its hemispheres: aimed so far, and all
     int32_t status;
-    // Where its row of form factors lies, or goes to, and whether it is there already.
+    // Where its row of form factors lies, or goes to, in units of rows.clh, and whether it is there
+    // already. 0: it is not kept.
     int32_t row, row_known;
     int32_t plane;      // the shooter's, as `planes`
     int32_t is_done;    // while others of the salvo have hemispheres left
@@ -80,6 +81,19 @@ typedef struct {
     uint32_t rows_kept;
     uint32_t repeated_shots, repeated_salvos;  // by known rows alone
 } Shot;
+
+// Memory of the rows that are kept (rows.clh): its units, of kRowUnit words, and how many are taken.
+// More than there are: it is full. A PE takes kExtentUnits at a time.
+#define kRowUnit 2
+#define kRowBitWords (kReduceBlock / 32)
+#define kExtentUnits 512
+typedef struct {
+    uint32_t taken, size;
+} RowPool;
+
+typedef struct {
+    uint32_t next, end;  // units
+} Extent;
 
 // Where a hemisphere of the final gather stands: a point on a surface, `plane` as `planes`, `reached`
 // as a Shot's.
@@ -142,6 +156,8 @@ typedef struct {
 static_assert(sizeof(BlockSummary) == 8);
 static_assert(sizeof(Shot) == 144);
 static_assert(sizeof(GatherPoint) == 56);
+static_assert(sizeof(RowPool) == 8);
+static_assert(sizeof(Extent) == 8);
 static_assert(sizeof(Cluster) == 44);
 static_assert(sizeof(Level) == 8);
 static_assert(sizeof(Projection) == 64);

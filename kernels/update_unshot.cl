@@ -2,7 +2,7 @@
 // that shoot at once sent to it. Each PE then reduces the unshot flux of its blocks, the first level
 // of the choice of the most energetic shooter. With TWO_LEVELS (Cohen et al.) a shooter is a group of
 // patches, their elements, and reflects what all of these received.
-// rows: [row][patch]. unshot, reflectance: [band][shooter]; flux in normalised units.
+// shot_rows: [shooter][patch], of this shot. unshot, reflectance: [band][shooter]; flux in normalised units.
 // first_patch: [shooter], and one more. block_unshot: [block][band].
 #include "salvo.clh"
 
@@ -98,14 +98,15 @@ static void end_reduction(const Reduction* reduction, int block, __global BlockS
 }
 
 __kernel void update_unshot(const __global Shot* salvo, const __global float* shot_flux,
-                            const __global float* rows, int stride, const __global int* first_patch,
-                            int shooter_stride, __global float* unshot,
+                            const __global float* shot_rows, int stride,
+                            const __global int* first_patch, int shooter_stride,
+                            __global float* unshot,
                             const __global float* reflectance, const __global float* band_weight,
                             __global BlockSummary* summaries, __global float* block_unshot) {
-    if (!is_shooting(salvo)) return;
+    const Place own = own_place();
+    if (own.pe < 0 || !is_shooting(salvo)) return;
     const int size = shooter_count(salvo);
-    const Blocks blocks =
-        own_blocks(get_global_id(0), get_global_size(0), shooter_stride / kReduceBlock);
+    const Blocks blocks = own_blocks(own.pe, own.count, shooter_stride / kReduceBlock);
     for (int block = blocks.first; block < blocks.end; ++block) {
         Reduction reduction;
         begin_reduction(salvo, size, block, &reduction);
@@ -113,7 +114,7 @@ __kernel void update_unshot(const __global Shot* salvo, const __global float* sh
             const int shooter = block * kReduceBlock + step * LANES;
             real_v form_factor[SALVO];
             for (int member = 0; member < size; ++member)
-                form_factor[member] = form_factor_to(rows + (size_t)salvo[member].row * stride,
+                form_factor[member] = form_factor_to(shot_rows + (size_t)member * stride,
                                                      first_patch, shooter);
             reduce(salvo, size, form_factor, shot_flux, shooter, step, shooter_stride, unshot,
                    reflectance, band_weight, &reduction);

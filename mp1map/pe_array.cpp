@@ -87,6 +87,7 @@ std::string PeArray::description() const {
 
 PeArray fit_pe_array(const DeviceSummary& device, const PeArrayRequest& request) {
     PeArray array;
+    array.is_on_cpu = device.is_cpu;
     array.layout = request.layout;
     array.broadcast = request.broadcast;
     array.lanes = request.lanes != 0 ? request.lanes : native_lanes(device);

@@ -22,6 +22,7 @@ struct PeArray {
     std::uint32_t lanes = 1;                          ///< proxels a PE takes at once: 1, 4, 8, 16
     std::uint32_t tile_width = 64, tile_height = 64;  ///< proxels
     std::uint32_t array_count = 1;                    ///< arrays that the patches are dealt out to
+    bool is_on_cpu = false;                           ///< whose driver deals groups out in runs
 
     Layout layout = Layout::cyclic;
     Broadcast broadcast = Broadcast::batch;

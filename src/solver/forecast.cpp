@@ -231,7 +231,7 @@ std::optional<Forecast> foretold(Asked& asked, const ForecastTask& task) {
     if (look * static_cast<double>(most_looks) < task.least_seconds) return {};
     const auto exchange = exchange_of(asked, task, group_count(look));
     if (!exchange) return {};
-    const double room = asked.pipeline.kept_rows();
+    const double room = asked.pipeline.room_for_rows();
     Forecast result = shoot_groups(*exchange, task, room);
     result.seconds = result.looks * seconds_a_look(asked, exchange->groups, look);
     if (room >= static_cast<double>(exchange->groups.size()))

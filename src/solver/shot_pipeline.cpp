@@ -35,13 +35,21 @@ std::uint64_t list_capacity(std::uint64_t stride) {
     return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
 }
 
-// Rows of form factors that so many bytes hold, 4 bytes a patch, beside those of a salvo; at most
-// one for each patch.
-std::uint32_t row_capacity(std::uint32_t patches, std::uint64_t stride, std::uint64_t row_bytes,
-                           std::uint32_t salvo) {
-    const std::uint64_t rows = std::max<std::uint64_t>(row_bytes / (4 * stride), salvo);
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(patches, rows - salvo));
+// Units of kept rows (kernels/rows.clh): as many as the bytes hold, at most those of rows without
+// zeros, one for each shooter, and of what is left of PEs' extents.
+std::uint32_t row_units(std::uint64_t shooters, std::uint64_t stride, std::uint64_t row_bytes,
+                        std::uint64_t pe_count) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    constexpr std::uint64_t kBlockUnits = (1 + kRowBitWords + kReduceBlock) / kRowUnit + 1;
+    const std::uint64_t all =
+        (shooters * (stride / kReduceBlock) * kBlockUnits / (kExtentUnits - 2 * kBlockUnits) +
+         2 * pe_count) *
+        kExtentUnits;
+    return static_cast<std::uint32_t>(std::min({row_bytes / (4 * kRowUnit), all, kMost}));
 }
+
+// What lies behind the last unit is read as well, a vector at a time.
+constexpr std::size_t kBehindRows = 16;
 
 std::string definition(const char* name, std::uint64_t value) {
     return std::string(" -D") + name + "=" + std::to_string(value);
@@ -54,6 +62,12 @@ bool needs_owners(const PipelineSettings& settings) {
     return settings.keep_owners || settings.form_factor == FormFactorMode::analytic;
 }
 
+// Groups of a launch for each that works, see kernels/progress.clh; more make no difference.
+std::size_t spacing_of(std::size_t groups, const mp1map::PeArray& array) {
+    constexpr std::size_t kGroups = 512, kMost = 8;
+    return array.is_on_cpu ? std::clamp<std::size_t>(kGroups / groups, 1, kMost) : 1;
+}
+
 std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution,
                           std::uint32_t corner_count, std::size_t bands, bool two_levels,
                           const PipelineSettings& settings) {
@@ -63,7 +77,11 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            definition("CORNERS", corner_count) + definition("BANDS", bands) +
            definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
            definition("BROADCAST_PATCHES", array.broadcast_patches()) +
-           definition("SALVO", settings.salvo) + flag("TWO_LEVELS", two_levels) +
+           definition("SALVO", settings.salvo) +
+           definition("STACK_SPACING", spacing_of(settings.salvo * array.array_count, array)) +
+           definition("TILE_SPACING",
+                      spacing_of(settings.salvo * count_tiles(resolution, array), array)) +
+           flag("TWO_LEVELS", two_levels) +
            flag("LAYOUT_BLOCK", array.layout == mp1map::Layout::block) +
            flag("EVALUATE_INCREMENTAL", settings.variants.incremental) +
            flag("DISTANCE_CONSTANT", settings.variants.constant_distance) +
@@ -212,12 +230,22 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
         shooter_stride / kReduceBlock * (sizeof(device::BlockSummary) + 4 * bands);
     const std::uint64_t analytic =
         mode == FormFactorMode::analytic ? stride * 4 * (kFactorKinds + 2) + plane : 0;
+    const std::uint64_t shot_rows =
+        4 * (salvo + 1) * (shooters < patches ? stride : stacks * kReduceBlock);
     const std::uint64_t rows =
-        4 * ((row_capacity(shooters, stride, row_bytes, salvo) + salvo) * (stride + 1) +
-             shooter_stride);
+        4 * (std::uint64_t{kRowUnit} * row_units(shooters, stride, row_bytes, stacks) +
+             kBehindRows + 2 * shooter_stride) +
+        stacks * sizeof(device::Extent) + shot_rows;
     const std::uint64_t shots = count_shots ? 4 * shooter_stride : 0;
     return geometry + radiosity + groups + plane + reduction + rows + shots +
            salvo * (projection + lists + analytic);
+}
+
+// A word and two more a block of patches, and one for each patch that is seen; a twenty-fifth is
+// lost where PEs' extents end.
+std::uint64_t estimated_row_bytes(double seen_patches, std::uint64_t patches) {
+    const double blocks = static_cast<double>(patches) / kReduceBlock;
+    return static_cast<std::uint64_t>(1.04 * 4 * (seen_patches + (1 + kRowBitWords) * blocks));
 }
 
 ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
@@ -233,9 +261,6 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
       tile_count_(count_tiles(resolution_, array_)),
       stack_count_(array_.array_count * array_.pe_count()),
       depth_(stack_depth(stride_, stack_count_)),
-      row_capacity_(row_capacity(
-          shooters.first_patch.empty() ? patches.patch_count : shooters.polygons.patch_count,
-          stride_, settings.row_bytes, salvo_)),
       disk_proxels_(disk_proxel_count(resolution_)),
       mode_(settings.form_factor),
       two_levels_(!shooters.first_patch.empty()),
@@ -279,10 +304,15 @@ ShotPipeline::ShotPipeline(const PatchArrays& patches, const PatchLight& light,
     band_weight_ = acu_.plural(light.band_weight);
     shot_flux_ = acu_.plural<float>(salvo_ * band_count_);
     escaped_ = acu_.plural<float>(2 * band_count_);
-    // More rows, for shots whose row is not kept.
-    rows_ = acu_.unset_plural<float>((std::size_t{row_capacity_} + salvo_) * stride_);
-    row_escaped_ = acu_.plural<float>(row_capacity_ + salvo_);
+    const auto shooting = two_levels_ ? shooters.polygons.patch_count : patches.patch_count;
+    const std::uint32_t units = row_units(shooting, stride_, settings.row_bytes, stack_count_);
+    rows_ = acu_.unset_plural<std::uint32_t>(std::size_t{kRowUnit} * units + kBehindRows);
+    row_pool_ = acu_.plural(std::vector{device::RowPool{1, units}});
+    row_extents_ = acu_.plural<device::Extent>(stack_count_);
     row_of_ = acu_.plural<std::int32_t>(shooter_stride_);
+    row_escaped_ = acu_.plural<float>(shooter_stride_);
+    shot_rows_ = acu_.plural<float>(
+        (salvo_ + 1) * std::size_t{apart_ || two_levels_ ? stride_ : stack_count_ * kReduceBlock});
     shots_of_ = acu_.plural<std::uint32_t>(settings.count_shots ? shooter_stride_ : 0);
     summaries_ = acu_.plural<device::BlockSummary>(blocks);
     block_unshot_ = acu_.plural<float>(blocks * band_count_);
@@ -336,14 +366,19 @@ void ShotPipeline::load(const PatchArrays& patches) {
 
 mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.at(name); }
 
-mp1map::Grid ShotPipeline::stack_grid() const { return {array_.array_count, array_.pe_count()}; }
+mp1map::Grid ShotPipeline::stack_grid() const {
+    const std::size_t spacing = spacing_of(std::size_t{salvo_} * array_.array_count, array_);
+    return {array_.array_count * spacing, array_.pe_count()};
+}
 
 mp1map::Grid ShotPipeline::salvo_stack_grid() const {
-    return {std::size_t{salvo_} * array_.array_count, array_.pe_count()};
+    const std::size_t groups = std::size_t{salvo_} * array_.array_count;
+    return {groups * spacing_of(groups, array_), array_.pe_count()};
 }
 
 mp1map::Grid ShotPipeline::salvo_tile_grid() const {
-    return {std::size_t{salvo_} * tile_count_, array_.pe_count()};
+    const std::size_t groups = std::size_t{salvo_} * tile_count_;
+    return {groups * spacing_of(groups, array_), array_.pe_count()};
 }
 
 void ShotPipeline::init_plane() {
@@ -425,12 +460,12 @@ void ShotPipeline::spread_residual() {
 
 void ShotPipeline::update_radiosity() {
     acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, received_,
-               received_rest_);
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, row_pool_,
+               row_extents_, shot_rows_, received_, received_rest_);
 }
 
 void ShotPipeline::update_unshot() {
-    acu_.issue(kernel("update_unshot"), stack_grid(), shot_, shot_flux_, rows_,
+    acu_.issue(kernel("update_unshot"), stack_grid(), shot_, shot_flux_, shot_rows_,
                std::int32_t(stride_), first_patch_, std::int32_t(shooter_stride_), unshot_,
                reflectance_, band_weight_, summaries_, block_unshot_);
 }
@@ -443,8 +478,8 @@ void ShotPipeline::receive_flux() {
         return;
     }
     acu_.issue(kernel("receive_flux"), stack_grid(), shot_, shot_flux_, proxel_count_,
-               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_,
-               std::int32_t(row_capacity_), received_, received_rest_, unshot_, reflectance_,
+               std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, row_pool_,
+               row_extents_, shot_rows_, received_, received_rest_, unshot_, reflectance_,
                band_weight_, summaries_, block_unshot_);
 }
 
@@ -452,8 +487,8 @@ void ShotPipeline::choose_shooter() {
     acu_.issue(kernel("choose_shooter"), {1, kReducePes}, shot_, summaries_, block_unshot_,
                std::int32_t(summaries_.size()), unshot_, std::int32_t(shooter_stride_),
                band_weight_, tolerance_, std::int32_t(disk_proxels_), proxel_count_,
-               std::int32_t(stride_), escaped_, shot_flux_, std::int32_t(row_capacity_), row_of_,
-               row_escaped_, std::int32_t(shots_of_.size() > 0), shots_of_);
+               std::int32_t(stride_), escaped_, shot_flux_, row_pool_, row_of_, row_escaped_,
+               std::int32_t(shots_of_.size() > 0), shots_of_);
 }
 
 void ShotPipeline::aim_points(std::uint32_t first, std::uint32_t end) {
@@ -506,7 +541,6 @@ void ShotPipeline::set_shooter(std::uint32_t shooter, std::uint32_t part) {
     next.part = part;
     next.part_count = part_count(shooter);
     next.status = kRunning;
-    next.row = static_cast<std::int32_t>(row_capacity_);
     acu_.load_words<kNextShooterWords>(shot_, next);
 }
 
@@ -599,6 +633,11 @@ std::vector<double> ShotPipeline::escaped() {
     for (std::size_t band = 0; band < band_count_; ++band)
         result[band] = double{sums[band]} + sums[band_count_ + band];
     return result;
+}
+
+double ShotPipeline::room_for_rows() {
+    const device::RowPool pool = acu_.unload(row_pool_).front();
+    return static_cast<double>(pool.size) * shot().rows_kept / pool.taken;
 }
 
 std::vector<std::uint32_t> ShotPipeline::shots_of() { return acu_.unload(shots_of_); }

@@ -164,7 +164,9 @@ class ShotPipeline {
     std::uint32_t stride() const { return stride_; }
     std::uint32_t shooter_stride() const { return shooter_stride_; }
     std::uint32_t salvo() const { return salvo_; }
-    std::uint32_t kept_rows() const { return row_capacity_; }  ///< at most
+    /// Waits; rows that there will be room for, if others are as those that are kept; 0 where none
+    /// is.
+    double room_for_rows();
     std::size_t band_count() const { return band_count_; }
     mp1map::Acu& acu() { return acu_; }
     std::uint64_t device_bytes() const { return acu_.allocated_bytes(); }
@@ -194,7 +196,7 @@ class ShotPipeline {
 
     std::uint32_t resolution_, stride_, shooter_stride_, salvo_;
     std::size_t band_count_;
-    std::uint32_t tile_count_, stack_count_, depth_, row_capacity_;
+    std::uint32_t tile_count_, stack_count_, depth_;
     std::uint64_t disk_proxels_;
     FormFactorMode mode_;
     bool two_levels_, apart_;
@@ -219,8 +221,13 @@ class ShotPipeline {
     mp1map::Plural<float> near_factor_, factors_, factor_block_sums_;
     mp1map::Plural<float> received_, received_rest_, unshot_, reflectance_, band_weight_;
     mp1map::Plural<float> shot_flux_, escaped_, block_unshot_;
-    mp1map::Plural<std::int32_t> row_of_;  // [shooter] its row + 1; 0: it has none
-    mp1map::Plural<float> rows_, row_escaped_;
+    // Rows that are kept, see kernels/rows.clh; and those of this shot, or what each PE has of
+    // them.
+    mp1map::Plural<std::uint32_t> rows_;
+    mp1map::Plural<device::RowPool> row_pool_;
+    mp1map::Plural<device::Extent> row_extents_;     // [PE]
+    mp1map::Plural<std::int32_t> row_of_;            // [shooter] where its row is; 0: it has none
+    mp1map::Plural<float> row_escaped_, shot_rows_;  // [shooter] what its row lacks
     mp1map::Plural<device::GatherPoint> points_;
     mp1map::Plural<float> radiosity_, block_irradiance_, gathered_;
     mp1map::Plural<std::uint32_t> activity_, shots_of_;
@@ -245,5 +252,8 @@ std::uint64_t estimated_device_bytes(std::uint32_t patches, std::uint32_t shoote
                                      std::uint32_t resolution, FormFactorMode mode,
                                      std::uint64_t row_bytes, const mp1map::PeArray& array,
                                      std::uint32_t salvo = 1, bool count_shots = false);
+
+/// What a kept row takes of a scene of so many patches, of which its shooter sees a part.
+std::uint64_t estimated_row_bytes(double seen_patches, std::uint64_t patches);
 
 }  // namespace hemirad

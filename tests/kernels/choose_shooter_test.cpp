@@ -25,13 +25,17 @@ struct Books {
     std::vector<float> flux;          // [shooter][band]
     std::vector<float> escaped;       // [sum, rest][band]
     std::int32_t escaped_count = 0, owned_count = 0;
-    std::int32_t row_capacity = 0;
+    device::RowPool pool{1, 0};           // room for no row
     std::vector<std::int32_t> row_of;     // [patch]
-    std::vector<float> row_escaped;       // [row]
+    std::vector<float> row_escaped;       // [patch]
     std::vector<std::uint32_t> shots_of;  // [patch]; empty: not counted
     float tolerance = 1e-3f;
 
     std::size_t stride() const { return summaries.size() * kReduceBlock; }
+    /// Units of a row's directory, a word a block.
+    std::uint32_t directory() const {
+        return static_cast<std::uint32_t>(summaries.size() + kRowUnit - 1) / kRowUnit;
+    }
 };
 
 // `blocks` of which each has its most energetic patch in the middle.
@@ -59,7 +63,7 @@ Books random_books(std::size_t blocks, std::size_t bands) {
     }
     books.escaped.assign(2 * bands, 0.0f);
     books.row_of.assign(books.stride(), 0);
-    books.row_escaped.assign(8, 0.0f);
+    books.row_escaped.assign(books.stride(), 0.0f);
     return books;
 }
 
@@ -88,13 +92,14 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         auto escaped = run.plural(books.escaped), flux = run.plural(books.flux);
         auto row_of = run.plural(books.row_of);
         auto row_escaped = run.plural(books.row_escaped);
+        auto pool = run.plural(std::vector{books.pool});
         auto shots_of = run.plural(books.shots_of);
         run.issue({1, GetParam()}, shot, run.plural(books.summaries),
                   run.plural(books.block_unshot), std::int32_t(books.summaries.size()),
                   run.plural(books.unshot), std::int32_t(books.stride()), run.plural(books.weight),
                   books.tolerance, kDiskProxels, proxel_count, std::int32_t(books.stride()),
-                  escaped, flux, books.row_capacity, row_of, row_escaped,
-                  std::int32_t(!books.shots_of.empty()), shots_of);
+                  escaped, flux, pool, row_of, row_escaped, std::int32_t(!books.shots_of.empty()),
+                  shots_of);
         Books result = books;
         salvo = run.acu().unload(shot);
         result.shot = salvo.front();
@@ -102,6 +107,7 @@ class ChooseShooter : public testing::TestWithParam<std::uint32_t> {
         result.escaped = run.acu().unload(escaped);
         result.flux = run.acu().unload(flux);
         result.row_of = run.acu().unload(row_of);
+        result.pool = run.acu().unload(pool).front();
         result.row_escaped = run.acu().unload(row_escaped);
         result.shots_of = run.acu().unload(shots_of);
         counts_ = run.acu().unload(proxel_count);
@@ -182,46 +188,76 @@ TEST_P(ChooseShooter, TheBooksOfTheShotAreClosed) {
     EXPECT_EQ(counts_[books.stride() + 2], 0);
 }
 
-TEST_P(ChooseShooter, RowsAreKeptWhileThereIsRoom) {
+TEST_P(ChooseShooter, ARowThatHasAPlaceIsKept) {
     auto books = random_books(30, 1);
-    books.row_capacity = 3;
-    books.shot.row = 2;
+    books.pool = {500, 1000};
+    books.shot.row = 77;
     books.shot.rows_kept = 2;
     books.escaped_count = 40;
 
     const auto after = closed(books);
 
-    EXPECT_EQ(after.row_of[books.shot.shooter], 3);
-    EXPECT_EQ(after.row_escaped[2], 40.0f / (kDiskProxels * kParts));
+    EXPECT_EQ(after.row_of[std::size_t(books.shot.shooter)], 77);
+    EXPECT_EQ(after.row_escaped[std::size_t(books.shot.shooter)], 40.0f / (kDiskProxels * kParts));
     EXPECT_EQ(after.shot.rows_kept, 3u);
-    EXPECT_EQ(after.shot.row, 3);
-    EXPECT_FALSE(after.shot.row_known);
 }
 
-TEST_P(ChooseShooter, ARowBeyondThoseIsForgotten) {
+TEST_P(ChooseShooter, ARowWithoutAPlaceIsForgotten) {
     auto books = random_books(30, 1);
-    books.row_capacity = 3;
-    books.shot.row = 3;
-    books.shot.rows_kept = 3;
+    books.pool = {500, 1000};
+    books.shot.row = 0;
+    books.shot.rows_kept = 2;
 
     const auto after = closed(books);
 
     EXPECT_EQ(after.row_of, books.row_of);
-    EXPECT_EQ(after.shot.rows_kept, 3u);
-    EXPECT_EQ(after.shot.row, 3);
+    EXPECT_EQ(after.shot.rows_kept, 2u);
+}
+
+TEST_P(ChooseShooter, NoRowIsKeptThatWasMadeWhenTheMemoryWasFull) {
+    auto books = random_books(30, 1);
+    books.pool = {1001, 1000};
+    books.shot.row = 77;
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.row_of, books.row_of);
+    EXPECT_EQ(after.shot.rows_kept, 0u);
+    EXPECT_EQ(after.shot.row, 0);
+}
+
+TEST_P(ChooseShooter, ANewRowBeginsWhereMemoryIsLeft) {
+    auto books = random_books(30, 1);
+    books.pool = {500, 500 + books.directory()};
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.row, 500);
+    EXPECT_FALSE(after.shot.row_known);
+    EXPECT_EQ(after.pool.taken, books.pool.size);
+}
+
+TEST_P(ChooseShooter, ANewRowHasNoPlaceWhereItsDirectoryDoesNotFit) {
+    auto books = random_books(30, 1);
+    books.pool = {500, 499 + books.directory()};
+
+    const auto after = closed(books);
+
+    EXPECT_EQ(after.shot.row, 0);
+    EXPECT_FALSE(after.shot.row_known);
+    EXPECT_EQ(after.pool.taken, 500u);
 }
 
 TEST_P(ChooseShooter, AShooterWhoseRowIsKnownNeedsNoHemisphere) {
     auto books = random_books(1, 1);
-    books.row_capacity = 3;
-    books.shot.row = 1;
-    books.shot.rows_kept = 1;
-    books.row_of[32] = 1;
+    books.pool = {500, 1000};
+    books.row_of[32] = 123;
 
     const auto after = closed(books);
 
     EXPECT_TRUE(after.shot.row_known);
-    EXPECT_EQ(after.shot.row, 0);
+    EXPECT_EQ(after.shot.row, 123);
+    EXPECT_EQ(after.pool.taken, 500u);
     EXPECT_GE(after.shot.part, after.shot.part_count);
 }
 
@@ -238,8 +274,8 @@ TEST_P(ChooseShooter, AShooterWhoseRowIsNotKnownHasHemispheresToMake) {
 TEST_P(ChooseShooter, AKnownRowBringsItsShareOfEscapesAndNoProxels) {
     auto books = random_books(30, 2);
     books.shot.row_known = 1;
-    books.shot.row = 1;
-    books.row_escaped[1] = 0.25f;
+    books.shot.row = 123;
+    books.row_escaped[std::size_t(books.shot.shooter)] = 0.25f;
 
     const auto after = closed(books);
 
@@ -285,9 +321,8 @@ Books salvo_books(std::uint32_t salvo) {
     books.salvo = salvo;
     books.shot.part = books.shot.part_count;
     books.shot.most_shots = std::numeric_limits<std::uint32_t>::max();
-    books.row_capacity = 100;
-    books.shot.row = 0;
-    books.row_escaped.assign(200, 0.0f);
+    books.pool = {500, 1000};
+    books.shot.row = 77;
     books.flux.assign(salvo * books.bands, 0.0f);
     device::Shot none{};
     none.shooter = -1;
@@ -346,7 +381,6 @@ TEST_P(ChooseShooter, CrumbsAreLeftToGrow) {
 // Two of three have looked, so that two of three stations are free.
 TEST_P(ChooseShooter, WhereOneHasToLookOthersLookAhead) {
     auto books = salvo_books(3);
-    books.shot.rows_kept = 2;
     books.shot.row_known = 1;
     books.row_of[std::size_t(shooter_of(0))] = 1;
     books.row_of[std::size_t(shooter_of(2))] = 2;
@@ -356,9 +390,10 @@ TEST_P(ChooseShooter, WhereOneHasToLookOthersLookAhead) {
 
     EXPECT_EQ(shooters_of(after), (std::vector{shooter_of(0), shooter_of(1), shooter_of(2)}));
     EXPECT_EQ(looking_ahead(after), (std::vector{shooter_of(4), shooter_of(5)}));
-    EXPECT_EQ(after.others[0].row, 2);
-    EXPECT_EQ(after.others[2].row, 3);
-    EXPECT_EQ(after.others[3].row, 4);
+    const auto directory = static_cast<std::int32_t>(books.directory());
+    EXPECT_EQ(after.others[0].row, 500);
+    EXPECT_EQ(after.others[2].row, 500 + directory);
+    EXPECT_EQ(after.others[3].row, 500 + 2 * directory);
     for (const auto& shot : {after.others[0], after.others[2], after.others[3]})
         EXPECT_LT(shot.part, shot.part_count);
 }
@@ -372,32 +407,19 @@ TEST_P(ChooseShooter, NobodyLooksAheadWhereAllThatShootHaveLooked) {
     EXPECT_TRUE(looking_ahead(closed(books)).empty());
 }
 
+// Room for the rows of those that shoot, and not for one more.
 TEST_P(ChooseShooter, NobodyLooksAheadForARowThatIsNotKept) {
     auto books = salvo_books(3);
-    books.row_capacity = 3;
+    books.pool = {500, 500 + 2 * books.directory()};
     books.shot.row_known = 1;
-    books.shot.rows_kept = 1;
     books.row_of[std::size_t(shooter_of(0))] = 1;
-
-    const auto one = closed(books);
-    books.row_of[std::size_t(shooter_of(1))] = 2;
-    books.shot.rows_kept = 2;
-    const auto other = closed(books);
-
-    EXPECT_TRUE(looking_ahead(one).empty());
-    EXPECT_TRUE(looking_ahead(other).empty());
-    EXPECT_EQ(other.others[1].row, 2);
-}
-
-TEST_P(ChooseShooter, RowsThatAreNotKeptLieApart) {
-    auto books = salvo_books(3);
-    books.row_capacity = 0;
 
     const auto after = closed(books);
 
-    EXPECT_EQ(after.shot.row, 0);
-    EXPECT_EQ(after.others[0].row, 1);
-    EXPECT_EQ(after.others[1].row, 2);
+    EXPECT_TRUE(looking_ahead(after).empty());
+    EXPECT_NE(after.others[0].row, 0);
+    EXPECT_NE(after.others[1].row, 0);
+    EXPECT_EQ(after.pool.taken, books.pool.size);
 }
 
 TEST_P(ChooseShooter, TheBooksOfAllThatShotAreClosed) {
@@ -405,13 +427,13 @@ TEST_P(ChooseShooter, TheBooksOfAllThatShotAreClosed) {
     books.escaped_count = 40;
     books.owned_count = 300;
     books.flux = {0.5f, 0.25f, 0.125f, 1, 0, 0};
-    books.row_escaped[5] = 0.5f;
+    books.row_escaped[70] = 0.5f;
     books.others[0].shooter = 70;  // known, and shoots
     books.others[0].row = 5;
     books.others[1] = books.shot;  // looks ahead
     books.others[1].shooter = 140;
     books.others[1].is_ahead = 1;
-    books.others[1].row = 1;
+    books.others[1].row = 78;
 
     const auto after = closed(books);
 
@@ -419,8 +441,8 @@ TEST_P(ChooseShooter, TheBooksOfAllThatShotAreClosed) {
     EXPECT_EQ(after.shot.repeated_shots, 1u);
     EXPECT_EQ(after.shot.repeated_salvos, 0u);
     EXPECT_EQ(after.shot.rows_kept, 2u);
-    EXPECT_EQ(after.row_of[3], 1);
-    EXPECT_EQ(after.row_of[140], 2);
+    EXPECT_EQ(after.row_of[3], 77);
+    EXPECT_EQ(after.row_of[140], 78);
     EXPECT_EQ(after.row_of[70], 0);
     EXPECT_EQ(after.shot.least_surplus, 340 - 1000);
     const double part = 40.0f / (kDiskProxels * kParts);

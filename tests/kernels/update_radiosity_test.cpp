@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "support/kept_rows.h"
 #include "support/kernel_run.h"
 #include "support/patch_database.h"
 
@@ -10,15 +11,17 @@ namespace hemirad::test::update_radiosity_test {
 namespace {
 
 constexpr std::uint32_t kStride = 4 * kReduceBlock;
-constexpr std::int32_t kRow = 2;
+constexpr std::uint32_t kUnits = 1 << 17;  // for rows, more than any shape takes
 
 // What a scene's patches have received, [band * kStride + patch], and what a shot brings.
 struct State {
     std::size_t bands = 1;
     std::vector<float> shot_flux, received, rest;
     std::vector<std::int32_t> counts;  // and kSpareCounts more
-    std::vector<float> rows;           // [row][patch]
-    std::int32_t status = kRunning, row_known = 0;
+    std::vector<float> row;            // of the shooter: known, or that of the shot
+    std::vector<float> kept;           // what is kept of it; empty: nothing
+    std::int32_t status = kRunning;
+    bool is_known = false, is_to_be_kept = true;
     std::int32_t disk_proxels = 3209;
     std::uint32_t part = 4, part_count = 4;
 };
@@ -36,14 +39,15 @@ State random_state(std::size_t bands) {
     for (std::uint32_t patch = 0; patch < kStride; ++patch)
         state.counts.push_back(random() % 4 == 0 ? static_cast<std::int32_t>(random() % 300) : 0);
     state.counts.resize(kStride + kSpareCounts);
-    for (std::uint32_t i = 0; i < (kRow + 2) * kStride; ++i) state.rows.push_back(unit(random));
+    for (std::uint32_t i = 0; i < kStride; ++i)
+        state.row.push_back(random() % 4 == 0 ? unit(random) : 0.0f);
     return state;
 }
 
 // One patch of one band: Knuth's two-sum of the flux.
 void add_flux(State& state, std::size_t band, std::size_t patch) {
     const std::size_t at = band * kStride + patch;
-    const float flux = state.rows[kRow * kStride + patch] * state.shot_flux[band];
+    const float flux = state.row[patch] * state.shot_flux[band];
     const float increment = flux + state.rest[at];
     const float total = state.received[at] + increment;
     const float part = total - state.received[at];
@@ -53,20 +57,26 @@ void add_flux(State& state, std::size_t band, std::size_t patch) {
 
 // Form factors go from the counts to the row, unless it is known, and the flux goes by the row.
 State expected_state(State state) {
-    if (!state.row_known)
+    if (!state.is_known)
         for (std::size_t patch = 0; patch < kStride; ++patch) {
-            state.rows[kRow * kStride + patch] =
-                static_cast<float>(state.counts[patch]) /
-                static_cast<float>(state.disk_proxels * state.part_count);
+            state.row[patch] = static_cast<float>(state.counts[patch]) /
+                               static_cast<float>(state.disk_proxels * state.part_count);
             state.counts[kStride + 2] += state.counts[patch];
             state.counts[patch] = 0;
         }
     for (std::size_t band = 0; band < state.bands; ++band)
         for (std::size_t patch = 0; patch < kStride; ++patch) add_flux(state, band, patch);
+    if (state.is_known || state.is_to_be_kept) state.kept = state.row;
     return state;
 }
 
+std::size_t pe_count(const Shape& shape) { return 2 * std::size_t{shape.width} * shape.height; }
+
 State updated(State state, const Shape& shape) {
+    KeptRows kept(kUnits, kStride, pe_count(shape));
+    const std::int32_t place = state.is_known        ? kept.keep(state.row)
+                               : state.is_to_be_kept ? kept.promise()
+                                                     : 0;
     KernelOptions options;
     options.lanes = shape.lanes;
     options.bands = static_cast<std::uint32_t>(state.bands);
@@ -75,25 +85,32 @@ State updated(State state, const Shape& shape) {
     shot.status = state.status;
     shot.part = state.part;
     shot.part_count = state.part_count;
-    shot.row = kRow;
-    shot.row_known = state.row_known;
+    shot.row = place;
+    shot.row_known = state.is_known;
     auto counts = run.plural(state.counts);
     auto received = run.plural(state.received), rest = run.plural(state.rest);
-    auto rows = run.plural(state.rows);
+    auto row = run.plural(state.row);
+    auto words = run.plural(kept.words);
+    auto pool = run.plural(kept.pool);
     run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
               run.plural(state.shot_flux), counts, state.disk_proxels, run.acu().plural<float>(1),
-              std::int32_t(kStride), rows, received, rest);
+              std::int32_t(kStride), words, pool, run.plural(kept.extents), row, received, rest);
     state.counts = run.acu().unload(counts);
     state.received = run.acu().unload(received);
     state.rest = run.acu().unload(rest);
-    state.rows = run.acu().unload(rows);
+    state.row = run.acu().unload(row);
+    kept.words = run.acu().unload(words);
+    kept.pool = run.acu().unload(pool);
+    EXPECT_FALSE(kept.is_full());
+    if (place != 0) state.kept = kept.row(place);
     return state;
 }
 
 void expect_equal(const State& state, const State& expected) {
     EXPECT_EQ(bits(state.received), bits(expected.received));
     EXPECT_EQ(bits(state.rest), bits(expected.rest));
-    EXPECT_EQ(bits(state.rows), bits(expected.rows));
+    EXPECT_EQ(bits(state.row), bits(expected.row));
+    EXPECT_EQ(bits(state.kept), bits(expected.kept));
     EXPECT_EQ(state.counts, expected.counts);
 }
 
@@ -116,7 +133,14 @@ TEST_P(UpdateRadiosity, AShotOfThreeBandsHasTheBitsOfTheScalarComputation) {
 
 TEST_P(UpdateRadiosity, AKnownRowIsTakenAsItIs) {
     auto state = random_state(3);
-    state.row_known = 1;
+    state.is_known = true;
+
+    expect_equal(updated(state, GetParam()), expected_state(state));
+}
+
+TEST_P(UpdateRadiosity, ARowWithoutAPlaceIsNotKept) {
+    auto state = random_state(1);
+    state.is_to_be_kept = false;
 
     expect_equal(updated(state, GetParam()), expected_state(state));
 }
@@ -135,10 +159,11 @@ TEST_P(UpdateRadiosity, OfASalvoEachSendsItsFluxByItsRow) {
         shot.status = kRunning;
         shot.part = shot.part_count = 1;
     }
-    salvo[0].row = 3;
+    KeptRows kept(kUnits, kStride, pe_count(GetParam()));
+    salvo[0].row = kept.keep(state.row);
     salvo[0].row_known = 1;
-    salvo[1].row = 0;
-    salvo[2].row = 1;
+    salvo[1].row = kept.promise();
+    salvo[2].row = kept.promise();
     salvo[2].is_ahead = 1;
     salvo[3].shooter = -1;
     std::vector<std::int32_t> counts(2 * kCounts);
@@ -147,21 +172,27 @@ TEST_P(UpdateRadiosity, OfASalvoEachSendsItsFluxByItsRow) {
     const std::vector<float> flux{0.5f, 0.3f, 0, 0};
     auto on_device = run.plural(counts);
     auto received = run.plural(state.received), rest = run.plural(state.rest);
-    auto rows = run.plural(state.rows);
+    auto shot_rows = run.acu().plural<float>(3 * kStride);
+    auto words = run.plural(kept.words);
 
     run.issue({2, std::size_t{GetParam().width} * GetParam().height}, run.plural(salvo),
               run.plural(flux), on_device, state.disk_proxels, run.acu().plural<float>(1),
-              std::int32_t(kStride), rows, received, rest);
+              std::int32_t(kStride), words, run.plural(kept.pool), run.plural(kept.extents),
+              shot_rows, received, rest);
 
-    const auto after = run.acu().unload(rows);
+    kept.words = run.acu().unload(words);
+    const auto looked = kept.row(salvo[1].row), ahead = kept.row(salvo[2].row);
+    const auto of_shot = run.acu().unload(shot_rows);
     const auto sums = run.acu().unload(received), rests = run.acu().unload(rest);
     const auto counted = run.acu().unload(on_device);
     const auto disk = static_cast<float>(state.disk_proxels);
     for (std::size_t patch = 0; patch < kStride; ++patch) {
         const auto first = static_cast<float>(counts[patch]) / disk;
-        EXPECT_EQ(after[patch], first);
-        EXPECT_EQ(after[kStride + patch], static_cast<float>(counts[kCounts + patch]) / disk);
-        const float sent = std::fma(first, flux[1], state.rows[3 * kStride + patch] * flux[0]);
+        EXPECT_EQ(looked[patch], first);
+        EXPECT_EQ(ahead[patch], static_cast<float>(counts[kCounts + patch]) / disk);
+        EXPECT_EQ(of_shot[patch], state.row[patch]);
+        EXPECT_EQ(of_shot[kStride + patch], first);
+        const float sent = std::fma(first, flux[1], state.row[patch] * flux[0]);
         // Two-sum is exact but for the increment's rounding.
         EXPECT_EQ(double{sums[patch]} + rests[patch],
                   double{state.received[patch]} + (sent + state.rest[patch]));
@@ -175,6 +206,7 @@ TEST_P(UpdateRadiosity, OfASalvoEachSendsItsFluxByItsRow) {
 TEST_P(UpdateRadiosity, AHaltedShotChangesNothing) {
     auto state = random_state(1);
     state.status = kBinsFull;
+    state.is_to_be_kept = false;
 
     expect_equal(updated(state, GetParam()), state);
 }
@@ -182,6 +214,7 @@ TEST_P(UpdateRadiosity, AHaltedShotChangesNothing) {
 TEST_P(UpdateRadiosity, NothingChangesBeforeTheShootersLastHemisphere) {
     auto state = random_state(1);
     state.part = 3;
+    state.is_to_be_kept = false;
 
     expect_equal(updated(state, GetParam()), state);
 }

@@ -11,14 +11,14 @@ namespace hemirad::test::update_unshot_test {
 namespace {
 
 constexpr std::uint32_t kShooters = 4 * kReduceBlock, kStride = 6 * kReduceBlock;
-constexpr std::int32_t kRow = 1, kShooter = 77;
+constexpr std::int32_t kShooter = 77;
 constexpr std::size_t kSums = 16;  // of a block, so that lanes do not change their order
 
 struct State {
     std::size_t bands = 1;
     std::vector<float> shot_flux, weight;    // [band]
     std::vector<float> unshot, reflectance;  // [band][patch]
-    std::vector<float> rows;                 // [row][patch]
+    std::vector<float> rows;                 // [member][patch], of the shot
     std::vector<std::int32_t> first_patch;   // [shooter], and one more; empty: one level
     std::int32_t shooter = kShooter, status = kRunning;
     std::uint32_t part = 4;
@@ -43,13 +43,13 @@ State random_state(std::size_t bands) {
         state.unshot.push_back(unit(random));
         state.reflectance.push_back(unit(random));
     }
-    for (std::uint32_t i = 0; i < (kRow + 1) * kStride; ++i) state.rows.push_back(unit(random));
+    for (std::uint32_t i = 0; i < 3 * kStride; ++i) state.rows.push_back(unit(random));
     return state;
 }
 
 // The reflected part of what the row brings goes to what is unshot, of which the shooter has none.
 float form_factor_to(const State& state, std::size_t shooter) {
-    const float* const row = state.rows.data() + kRow * kStride;
+    const float* const row = state.rows.data();
     if (state.first_patch.empty()) return row[shooter];
     std::array<float, kSums> sums{};
     for (int i = state.first_patch[shooter]; i < state.first_patch[shooter + 1]; ++i)
@@ -113,7 +113,6 @@ Outcome updated(const State& state, const Shape& shape) {
     shot.status = state.status;
     shot.part = state.part;
     shot.part_count = 4;
-    shot.row = kRow;
     auto unshot = run.plural(state.unshot);
     auto summaries = run.acu().plural<device::BlockSummary>(kShooters / kReduceBlock);
     auto block_unshot = run.acu().plural<float>(kShooters / kReduceBlock * state.bands);
@@ -176,7 +175,6 @@ TEST_P(UpdateUnshot, OfASalvoEachHasShotWhatItHad) {
         salvo[member].status = kRunning;
         salvo[member].part = salvo[member].part_count = 1;
         salvo[member].shooter = member < 4 ? std::int32_t(kMembers[member]) : -1;
-        salvo[member].row = member < 2 ? std::int32_t(member) : 0;
     }
     salvo[3].is_ahead = 1;
     const std::vector<float> flux{0.5f, 0.25f, 0.125f, 9, 0, 0, 0, 0};
@@ -193,8 +191,7 @@ TEST_P(UpdateUnshot, OfASalvoEachHasShotWhatItHad) {
     for (std::size_t shooter = 0; shooter < kShooters; ++shooter) {
         double sent = 0;
         for (std::size_t member = 0; member < 3; ++member)
-            sent += double{flux[member]} *
-                    state.rows[std::size_t(salvo[member].row) * kStride + shooter];
+            sent += double{flux[member]} * state.rows[member * kStride + shooter];
         const bool has_shot = shooter == 77 || shooter == 80 || shooter == 200;
         EXPECT_NEAR(left[shooter],
                     (has_shot ? 0 : state.unshot[shooter]) + state.reflectance[shooter] * sent,
@@ -219,7 +216,7 @@ TEST_P(UpdateUnshot, EquallyEnergeticPatchesLeaveTheChoiceToTheLowest) {
 
 TEST_P(UpdateUnshot, TheShooterKeepsOnlyWhatItSendsToItself) {
     auto state = random_state(1);
-    state.rows[kRow * kStride + kShooter] = 0;
+    state.rows[kShooter] = 0;
 
     EXPECT_EQ(updated(state, GetParam()).unshot[kShooter], 0.0f);
 }
