@@ -10,6 +10,7 @@
 
 #include "cli/free_memory.h"
 #include "cli/gather_lightmaps.h"
+#include "cli/seen_share.h"
 #include "cli/text.h"
 #include "errors.h"
 #include "lightmap/footprint.h"
@@ -91,7 +92,22 @@ std::uint32_t resolution_of(const SolveOptions& options) {
                                 : options.solver.resolution;
 }
 
-/// Rows are taken as shooters come; a solve that converges comes to most of them.
+/// What is touched of the memory for rows: they are made as shooters come, and a solve that
+/// converges comes to most of them. Where there is certainly not room for all, nobody asks what
+/// they see.
+std::uint64_t touched_row_bytes(const Mesh& mesh, const SolveOptions& options,
+                                std::uint64_t allocated) {
+    constexpr double kLeastSeen = 0.05;
+    const std::uint64_t patches = mesh.patches.size();
+    const std::uint64_t rows =
+        std::min<std::uint64_t>(options.solver.max_shots, mesh.shooter_count());
+    const auto bytes = [&](double share) {
+        return rows * estimated_row_bytes(share * static_cast<double>(patches), patches);
+    };
+    if (bytes(kLeastSeen) >= allocated) return allocated;
+    return std::min(allocated, whole_pages(bytes(seen_share(mesh))));
+}
+
 MemoryParts on_device(const Mesh& mesh, const SolveOptions& options,
                       const mp1map::DeviceSummary& device) {
     const auto& solver = options.solver;
@@ -108,11 +124,10 @@ MemoryParts on_device(const Mesh& mesh, const SolveOptions& options,
     const std::uint64_t plain = with_rows(0);
     const std::uint64_t rows =
         with_rows(usable_row_bytes(solver.row_bytes, shooters, patches, device)) - plain;
-    const std::uint64_t shots = std::min<std::uint64_t>(solver.max_shots, shooters);
-    const std::uint64_t touched = std::min(rows, whole_pages(4 * patches * shots));
     return {{"patches and plane on the device", plain,
              "raise --patch-size, lower --resolution or --salvo"},
-            {"rows of form factors", touched, "lower --row-memory"}};
+            {"rows of form factors", device.is_cpu ? touched_row_bytes(mesh, options, rows) : rows,
+             "lower --row-memory"}};
 }
 
 std::uint64_t near_finds(const Mesh& mesh, const SolverSettings& solver) {
