@@ -1,0 +1,67 @@
+#include "scene/segment_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+
+namespace hemirad::test::segment_tree_test {
+namespace {
+
+using meshing::Segment;
+using meshing::SegmentTree;
+using meshing::Slab;
+
+constexpr std::uint32_t kSpokes = 4000, kHub = kSpokes / 2;
+
+/// A rough cone about a hub, which is somewhere among the other vertices.
+std::vector<glm::dvec3> rough_cone() {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<> height(0.5, 1);
+    std::vector<glm::dvec3> positions;
+    for (std::uint32_t i = 0; i <= kSpokes; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kSpokes;
+        positions.push_back({std::cos(angle), std::sin(angle), height(random)});
+    }
+    positions[kHub] = {};
+    return positions;
+}
+
+std::vector<Segment> spokes() {
+    std::vector<Segment> spokes;
+    for (std::uint32_t i = 0; i <= kSpokes; ++i)
+        if (i != kHub) spokes.push_back({std::min(i, kHub), std::max(i, kHub)});
+    return spokes;
+}
+
+/// Of the triangle of the hub and two vertices.
+Slab slab_of(const std::vector<glm::dvec3>& positions, std::uint32_t a, std::uint32_t b) {
+    const glm::dvec3 normal = glm::normalize(glm::cross(positions[a], positions[b]));
+    const auto frame = meshing::frame_along(positions[kHub], positions[a], normal);
+    return {frame, {2, 2}, 1e-9};
+}
+
+TEST(SegmentTree, FindsTheTwoSpokesOfATriangleOfAFan) {
+    const auto positions = rough_cone();
+    const SegmentTree tree(positions, spokes());
+
+    const auto found = tree.in(slab_of(positions, 10, 11));
+
+    EXPECT_EQ(found, (std::vector<std::uint32_t>{10, 11}));
+}
+
+/// The hub lies in the planes of all triangles, and so every box that is about a spoke meets them.
+TEST(SegmentTree, LooksAtFewOfTheSpokesOfAFan) {
+    const auto positions = rough_cone();
+    const SegmentTree tree(positions, spokes());
+    std::size_t looks = 0;
+
+    for (std::uint32_t i = 0; i < 100; ++i) tree.in(slab_of(positions, i, i + 1), &looks);
+
+    EXPECT_LT(looks, 100 * kSpokes / 20);
+}
+
+}  // namespace
+}  // namespace hemirad::test::segment_tree_test
