@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <fstream>
+#include <set>
 #include <utility>
 
 #include "cli/free_memory.h"
@@ -41,7 +42,7 @@ constexpr std::uint64_t kFootprintBytes = sizeof(Footprint);
 constexpr std::uint64_t kTexelsTogether = 1u << 22;
 // Of texels shown, those asked for in the largest round, and a round's cells of each: measured on
 // scenes where 28 to 86 % are gathered in all.
-constexpr double kLargestRound = 0.375;
+constexpr double kLargestRound = 0.25;
 constexpr std::uint64_t kCellBytes = 24;
 // Beside the channels, chart by chart or in the encoder.
 constexpr std::uint64_t kLeastMore = 8;
@@ -169,24 +170,32 @@ MemoryPart gathered_light(const Mesh& mesh, const ChartLayout& layout,
     return {"gathered light", bytes * texels_of_all(layout), "raise --texel-size"};
 }
 
+/// Of charts with their gutters, and without.
 struct Texels {
     std::uint64_t all = 0, shown = 0;
+
+    bool operator<(const Texels& other) const { return all < other.all; }
 };
 
-/// Of the atlas where they are the most, those of its charts with their gutters, and without.
-Texels texels_in_charts(const ChartLayout& layout) {
+/// Of the charts of an atlas that are gathered together, where these have the most.
+Texels texels_gathered_together(const ChartLayout& layout) {
     std::vector<Texels> of_atlas(layout.atlases.size());
+    Texels most;
+    const auto add = [&](std::uint32_t atlas, const Texels& more) {
+        Texels& together = of_atlas[atlas];
+        together = {together.all + more.all, together.shown + more.shown};
+        most = std::max(most, together);
+        if (together.all >= kTexelsTogether) together = {};
+    };
+    std::set<std::uint32_t> authored;
+    for (const AuthoredTriangle& triangle : layout.authored) authored.insert(triangle.atlas);
+    for (const std::uint32_t atlas : authored)
+        add(atlas, {texels_of(layout.atlases[atlas]), texels_of(layout.atlases[atlas])});
     const std::uint64_t gutter = 2 * layout.padding;
-    for (const Chart& chart : layout.charts) {
-        Texels& texels = of_atlas[chart.atlas];
-        texels.all += (chart.width + gutter) * (chart.height + gutter);
-        texels.shown += std::uint64_t{chart.width} * chart.height;
-    }
-    for (const AuthoredTriangle& triangle : layout.authored) {
-        const std::uint64_t texels = texels_of(layout.atlases[triangle.atlas]);
-        of_atlas[triangle.atlas] = {texels, texels};
-    }
-    return std::ranges::max(of_atlas, {}, &Texels::all);
+    for (const Chart& chart : layout.charts)
+        add(chart.atlas, {(chart.width + gutter) * (chart.height + gutter),
+                          std::uint64_t{chart.width} * chart.height});
+    return most;
 }
 
 /// The lightmap of the patches as a guide, footprints and values of the charts gathered together,
@@ -195,17 +204,16 @@ Texels texels_in_charts(const ChartLayout& layout) {
 MemoryPart texels_to_gather(const Mesh& mesh, const ChartLayout& layout,
                             const SolveOptions& options) {
     const std::uint64_t bands = gathered_bands(options, mesh);
-    const Texels texels = texels_in_charts(layout);
-    const std::uint64_t most = kTexelsTogether + texels_of_largest_part(layout);
+    const Texels texels = texels_gathered_together(layout);
     const std::uint64_t texel = kFootprintBytes + 4 * bands + 5;  // state and patch beyond
     const std::uint64_t point = sizeof(SurfacePoint) + 4 + 8 * bands;
-    const std::uint64_t points = std::min(texels.shown, most);
     const std::uint64_t asked =
         options.gather_error > 0
-            ? static_cast<std::uint64_t>(kLargestRound * double(points)) * (point + kCellBytes)
-            : points * point;
+            ? static_cast<std::uint64_t>(kLargestRound * double(texels.shown)) *
+                  (point + kCellBytes)
+            : texels.shown * point;
     return {"texels to gather",
-            4 * (bands + 1) * texels_of_largest(layout) + texel * std::min(texels.all, most) +
+            4 * (bands + 1) * texels_of_largest(layout) + texel * texels.all +
                 footprint_bytes(layout) + asked,
             "raise --texel-size or --gather-error"};
 }
