@@ -62,9 +62,12 @@ std::array<SegmentTree::Box, 2> SegmentTree::ends_along(int axis, std::uint32_t 
 void SegmentTree::build(std::uint32_t begin, std::uint32_t end) {
     const auto node = nodes_.size();
     const Box box = box_of(begin, end);
-    const int axis = longest_axis(box.high - box.low);
-    nodes_.push_back({box, ends_along(axis, begin, end), begin, end, 0});
+    nodes_.push_back(
+        {box, ends_along(longest_axis(box.high - box.low), begin, end), begin, end, 0});
     if (end - begin <= kLeaf) return;
+    Box middles;
+    for (std::uint32_t i = begin; i < end; ++i) middles.add(doubled_middle(order_[i]));
+    const int axis = longest_axis(middles.high - middles.low);
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                      [&](std::uint32_t a, std::uint32_t b) {
@@ -114,7 +117,8 @@ std::vector<std::uint32_t> SegmentTree::in(const Slab& slab, std::size_t* looks)
             continue;
         }
         for (std::uint32_t i = node.begin; i < node.end; ++i)
-            if (lies_in_plane(slab, order_[i])) found.push_back(order_[i]);
+            if (lies_in_plane(slab, order_[i]) && meets(slab, box_of(i, i + 1)))
+                found.push_back(order_[i]);
     }
     std::ranges::sort(found);
     return found;

@@ -28,7 +28,7 @@ class SegmentTree {
   public:
     SegmentTree(const std::vector<glm::dvec3>& positions, std::vector<Segment> segments);
 
-    /// Ascending; those whose ends lie within the precision of the slab's plane and whose boxes
+    /// Ascending; those whose ends lie within the precision of the slab's plane and whose own boxes
     /// meet the slab. Adds to `looks` the boxes that were looked at.
     std::vector<std::uint32_t> in(const Slab& slab, std::size_t* looks = nullptr) const;
 

@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
-#include <random>
 
 namespace hemirad::test::segment_tree_test {
 namespace {
@@ -16,15 +14,12 @@ using meshing::Slab;
 
 constexpr std::uint32_t kSpokes = 4000, kHub = kSpokes / 2;
 
-/// A rough cone about a hub, which is somewhere among the other vertices.
-std::vector<glm::dvec3> rough_cone() {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<> height(0.5, 1);
+/// A wave on a cylinder about a hub, which is somewhere among the other vertices; neighbours are
+/// far apart.
+std::vector<glm::dvec3> wave() {
     std::vector<glm::dvec3> positions;
-    for (std::uint32_t i = 0; i <= kSpokes; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kSpokes;
-        positions.push_back({std::cos(angle), std::sin(angle), height(random)});
-    }
+    for (std::uint32_t i = 0; i <= kSpokes; ++i)
+        positions.push_back({std::cos(i), std::sin(i), std::cos(3 * i)});
     positions[kHub] = {};
     return positions;
 }
@@ -44,7 +39,7 @@ Slab slab_of(const std::vector<glm::dvec3>& positions, std::uint32_t a, std::uin
 }
 
 TEST(SegmentTree, FindsTheTwoSpokesOfATriangleOfAFan) {
-    const auto positions = rough_cone();
+    const auto positions = wave();
     const SegmentTree tree(positions, spokes());
 
     const auto found = tree.in(slab_of(positions, 10, 11));
@@ -52,9 +47,18 @@ TEST(SegmentTree, FindsTheTwoSpokesOfATriangleOfAFan) {
     EXPECT_EQ(found, (std::vector<std::uint32_t>{10, 11}));
 }
 
+TEST(SegmentTree, FindsNoneBesideTheRectangle) {
+    const std::vector<glm::dvec3> positions{{0, 1, 0}, {0.9, 1, 0}, {1.1, 1, 0}, {3, 1, 0}};
+    const SegmentTree tree(positions, {{0, 1}, {2, 3}});
+
+    const auto found = tree.in({{{}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 2}, 1e-9});
+
+    EXPECT_EQ(found, (std::vector<std::uint32_t>{0}));
+}
+
 /// The hub lies in the planes of all triangles, and so every box that is about a spoke meets them.
 TEST(SegmentTree, LooksAtFewOfTheSpokesOfAFan) {
-    const auto positions = rough_cone();
+    const auto positions = wave();
     const SegmentTree tree(positions, spokes());
     std::size_t looks = 0;
 
