@@ -373,8 +373,9 @@ std::uint64_t available_memory() { return free_memory() + resident_bytes(); }
 
 void require_memory_for_mesh(const Scene& scene, const MeshSettings& settings,
                              std::optional<std::uint64_t> limit, const std::string& device) {
-    if (!(least_patches(scene, settings) < kMostMeshPatches)) return;
-    const auto patches = static_cast<std::uint32_t>(least_patches(scene, settings));
+    const double least = least_patches(scene, settings);
+    if (!(least < kMostMeshPatches)) return;
+    const auto patches = static_cast<std::uint32_t>(least);
     const bool has_elements =
         settings.element_size > 0 && settings.element_size < settings.patch_size;
     MemoryEstimate estimate;
