@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <fstream>
+#include <set>
 #include <utility>
 
 #include "cli/free_memory.h"
@@ -28,6 +29,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 // from the cache, and how much more where they are compiled; a gather has kernels of its own.
 constexpr std::uint64_t kProgram = 88 * kMiB;
 constexpr std::uint64_t kCompiler = 155 * kMiB, kGatherCompiler = 60 * kMiB;
+constexpr std::uint64_t kGatherKernels = 8 * kMiB;
 // Measured at 191,304 to 2 million patches: vertices, patches, fragments and grids, after the mesh
 // was made.
 constexpr std::uint64_t kMeshBytes = 190;  // and 185 to 203 at the most while it is made
@@ -39,6 +41,10 @@ constexpr std::uint64_t kHugePage = 2 * kMiB;
 constexpr std::uint64_t kFootprintBytes = sizeof(Footprint);
 // What charts are gathered together, src/lightmap/gather_light.cpp.
 constexpr std::uint64_t kTexelsTogether = 1u << 22;
+// Of texels shown, those asked for in the largest round, and a round's cells of each: measured on
+// scenes where 28 to 86 % are gathered in all.
+constexpr double kLargestRound = 0.25;
+constexpr std::uint64_t kCellBytes = 24;
 // Beside the channels, chart by chart or in the encoder.
 constexpr std::uint64_t kLeastMore = 8;
 // A texel of a preview, besides the light it is made of.
@@ -179,19 +185,59 @@ MemoryPart gathered_light(const Mesh& mesh, const ChartLayout& layout,
     return {"gathered light", bytes * texels_of_all(layout), "raise --texel-size"};
 }
 
+/// Of charts with their gutters, and without.
+struct Texels {
+    std::uint64_t all = 0, shown = 0;
+
+    bool operator<(const Texels& other) const { return all < other.all; }
+};
+
+/// Of the charts of an atlas that are gathered together, where these have the most.
+Texels texels_gathered_together(const ChartLayout& layout) {
+    std::vector<Texels> of_atlas(layout.atlases.size());
+    Texels most;
+    const auto add = [&](std::uint32_t atlas, const Texels& more) {
+        Texels& together = of_atlas[atlas];
+        together = {together.all + more.all, together.shown + more.shown};
+        most = std::max(most, together);
+        if (together.all >= kTexelsTogether) together = {};
+    };
+    std::set<std::uint32_t> authored;
+    for (const AuthoredTriangle& triangle : layout.authored) authored.insert(triangle.atlas);
+    for (const std::uint32_t atlas : authored)
+        add(atlas, {texels_of(layout.atlases[atlas]), texels_of(layout.atlases[atlas])});
+    const std::uint64_t gutter = 2 * layout.padding;
+    for (const Chart& chart : layout.charts)
+        add(chart.atlas, {(chart.width + gutter) * (chart.height + gutter),
+                          std::uint64_t{chart.width} * chart.height});
+    return most;
+}
+
 /// The lightmap of the patches as a guide, footprints and values of the charts gathered together,
-/// and, where all texels are gathered, points and what is found there.
+/// the footprints of the chart that is drawn, and what is asked for in a round: points, which
+/// texels they are, what is found there.
 MemoryPart texels_to_gather(const Mesh& mesh, const ChartLayout& layout,
                             const SolveOptions& options) {
     const std::uint64_t bands = gathered_bands(options, mesh);
-    const std::uint64_t together =
-        std::min(texels_of_largest(layout), kTexelsTogether + texels_of_largest_part(layout));
+    const Texels texels = texels_gathered_together(layout);
     const std::uint64_t texel = kFootprintBytes + 4 * bands + 5;  // state and patch beyond
-    const std::uint64_t point =
-        options.gather_error > 0 ? 0 : sizeof(SurfacePoint) * 2 + 4 + 8 * bands;
+    const std::uint64_t point = sizeof(SurfacePoint) + 4 + 8 * bands;
+    const std::uint64_t asked =
+        options.gather_error > 0
+            ? static_cast<std::uint64_t>(kLargestRound * double(texels.shown)) *
+                  (point + kCellBytes)
+            : texels.shown * point;
     return {"texels to gather",
-            4 * (bands + 1) * texels_of_largest(layout) + (texel + point) * together,
+            4 * (bands + 1) * texels_of_largest(layout) + texel * texels.all +
+                footprint_bytes(layout) + asked,
             "raise --texel-size or --gather-error"};
+}
+
+/// Beside the buffers: its kernels, and what patches send, once more.
+MemoryPart gather_on_host(const Mesh& mesh, const SolveOptions& options) {
+    const std::uint64_t patch = kUploadBytes + 2 * 8 * gathered_bands(options, mesh);
+    return {"kernels and patches of the gather", kGatherKernels + patch * mesh.patches.size(),
+            "raise --patch-size"};
 }
 
 MemoryParts while_gathering(const Mesh& mesh, const ChartLayout& layout,
@@ -201,6 +247,7 @@ MemoryParts while_gathering(const Mesh& mesh, const ChartLayout& layout,
     if (!options.gather) return parts;
     parts.push_back(gathered_light(mesh, layout, options));
     parts.push_back(texels_to_gather(mesh, layout, options));
+    parts.push_back(gather_on_host(mesh, options));
     if (device.is_cpu)
         parts.push_back(
             {"gather on the device",
@@ -341,8 +388,9 @@ std::uint64_t available_memory() { return free_memory() + resident_bytes(); }
 
 void require_memory_for_mesh(const Scene& scene, const MeshSettings& settings,
                              std::optional<std::uint64_t> limit, const std::string& device) {
-    if (!(least_patches(scene, settings) < kMostMeshPatches)) return;
-    const auto patches = static_cast<std::uint32_t>(least_patches(scene, settings));
+    const double least = least_patches(scene, settings);
+    if (!(least < kMostMeshPatches)) return;
+    const auto patches = static_cast<std::uint32_t>(least);
     const bool has_elements =
         settings.element_size > 0 && settings.element_size < settings.patch_size;
     MemoryEstimate estimate;

@@ -11,6 +11,7 @@
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
 #include "cli/option_values.h"
+#include "cli/outputs.h"
 #include "cli/solve_options.h"
 #include "cli/sweep_csv.h"
 #include "cli/sweep_plan.h"
@@ -82,6 +83,8 @@ std::vector<Swept> read_scenes(const SweepOptions& options) {
     std::vector<Swept> result;
     for (const auto& file : scenes_of(options)) {
         const auto scene = read_scene(file);
+        check_distinct(file, {options.output});
+        keep_side_files(scene, {options.output});
         const double patch_size = patch_size_of(options, scene, file);
         const auto mesh = build_mesh(scene, {.patch_size = patch_size});
         result.push_back({file.stem().string(), patch_size, SweepScene(patch_arrays(mesh), shots)});

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
 
 #include "errors.h"
 #include "lightmap/exr_header.h"
@@ -113,8 +112,7 @@ std::map<std::string, std::string> texts_in(const Imf::Header& header) {
 }  // namespace
 
 ExrLightmap read_exr(const std::filesystem::path& path, const std::vector<std::string>& bands) {
-    std::error_code no_name;  // of a file: too long
-    if (!std::filesystem::is_regular_file(path, no_name)) fail(path, "no such file");
+    if (!std::filesystem::is_regular_file(status_of(path))) fail(path, "no such file");
     check_exr_headers(path);
     try {
         Imf::InputFile file(path.c_str(), 0);

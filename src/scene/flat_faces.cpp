@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "scene/clip_ears.h"
 #include "scene/face_warnings.h"
 #include "scene/frame.h"
 #include "scene/polygon.h"

@@ -158,9 +158,8 @@ bool is_in_folder(const std::string& path, const std::filesystem::path& folder) 
 }
 
 bool may_read(const std::string& path, void* folder) {
-    std::error_code no_name;  // of a file: too long
     return is_in_folder(path, static_cast<const Folder*>(folder)->path) &&
-           std::filesystem::is_regular_file(path, no_name);
+           std::filesystem::is_regular_file(status_of(path));
 }
 
 bool is_read_rarely(Folder& folder, const std::filesystem::path& path) {

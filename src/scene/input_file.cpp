@@ -103,4 +103,9 @@ void check_scene(const InputFile& file, const Scene& scene) {
     if (scene.faces.empty()) throw InputError(file.name + ": holds no faces");
 }
 
+std::filesystem::file_status status_of(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::status(path, ignored);
+}
+
 }  // namespace hemirad

@@ -39,6 +39,9 @@ void warn(Scene& scene, const std::string& element, const std::string& reason);
 std::optional<std::filesystem::path> resolve_reference(const InputFile& file,
                                                        const std::string& reference);
 
+/// Of what the path leads to; nothing, too, where no file has such a name, as it is too long.
+std::filesystem::file_status status_of(const std::filesystem::path& path);
+
 /// By its ending.
 bool is_gltf(const std::filesystem::path& path);
 

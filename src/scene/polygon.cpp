@@ -1,6 +1,7 @@
 #include "scene/polygon.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -9,10 +10,6 @@ namespace hemirad::meshing {
 namespace {
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-double turn(const Corner& a, const Corner& b, const Corner& c) {
-    return cross(b.at - a.at, c.at - a.at);
-}
 
 double longest_edge(const Polygon& polygon) {
     double longest = 0;
@@ -66,48 +63,18 @@ double thinnest(const std::vector<Polygon>& parts) {
     return least;
 }
 
-bool lies_in(const Corner& p, const std::array<Corner, 3>& triangle) {
-    for (const auto& corner : triangle)
-        if (corner.vertex == p.vertex) return false;
-    return turn(triangle[0], triangle[1], p) >= 0 && turn(triangle[1], triangle[2], p) >= 0 &&
-           turn(triangle[2], triangle[0], p) >= 0;
-}
-
 std::array<Corner, 3> corner_triangle(const Polygon& polygon, std::size_t i) {
     const std::size_t n = polygon.size();
     return {polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n]};
 }
 
-// Only a corner that does not turn left can be the one that blocks an ear.
-bool is_ear(const Polygon& polygon, const std::array<Corner, 3>& ear) {
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const auto [a, b, c] = corner_triangle(polygon, i);
-        if (turn(a, b, c) <= 0 && lies_in(b, ear)) return false;
-    }
-    return true;
-}
-
-std::size_t find_ear(const Polygon& polygon, double precision) {
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const auto ear = corner_triangle(polygon, i);
-        const Polygon triangle(ear.begin(), ear.end());
-        const bool has_area = turn(ear[0], ear[1], ear[2]) > 0 && thickness(triangle) > precision;
-        if (has_area && is_ear(polygon, ear)) return i;
-    }
-    return polygon.size();
-}
-
-std::size_t find_straight_corner(const Polygon& polygon, double precision) {
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const auto [a, b, c] = corner_triangle(polygon, i);
-        if (std::abs(bulge(a, b, c)) <= precision) return i;
-    }
-    return polygon.size();
-}
-
 bool points_up(const glm::dvec2& edge) { return edge.y > 0 || (edge.y == 0 && edge.x > 0); }
 
 }  // namespace
+
+double turn(const Corner& a, const Corner& b, const Corner& c) {
+    return cross(b.at - a.at, c.at - a.at);
+}
 
 double area(const Polygon& polygon) {
     double twice = 0;
@@ -184,20 +151,6 @@ std::vector<Polygon> cut_into_quads(const Polygon& polygon, double precision) {
     }
     std::erase_if(best, [&](const Polygon& part) { return thickness(part) <= precision; });
     return best;
-}
-
-std::vector<std::array<Corner, 3>> clip_ears(Polygon polygon, double precision) {
-    std::vector<std::array<Corner, 3>> triangles;
-    while (polygon.size() > 2) {
-        std::size_t i = find_ear(polygon, precision);
-        if (i < polygon.size())
-            triangles.push_back(corner_triangle(polygon, i));
-        else
-            i = find_straight_corner(polygon, precision);
-        if (i == polygon.size()) return {};
-        polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-    return triangles;
 }
 
 }  // namespace hemirad::meshing

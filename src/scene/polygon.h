@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <vector>
@@ -15,6 +14,9 @@ struct Corner {
 
 /// Counter-clockwise; the last corner joins the first.
 using Polygon = std::vector<Corner>;
+
+/// Twice the area of the triangle: positive where c lies to the left of the line from a to b.
+double turn(const Corner& a, const Corner& b, const Corner& c);
 
 double area(const Polygon& polygon);
 
@@ -40,8 +42,5 @@ double common_area(const Polygon& a, const Polygon& b);
 /// A strictly convex polygon as quads and at most one triangle.
 /// Parts no thicker than `precision` are left out.
 std::vector<Polygon> cut_into_quads(const Polygon& polygon, double precision);
-
-/// Ear clipping (Meisters 1975) of a simple polygon; empty where it is not simple after all.
-std::vector<std::array<Corner, 3>> clip_ears(Polygon polygon, double precision);
 
 }  // namespace hemirad::meshing

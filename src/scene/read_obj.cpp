@@ -156,8 +156,7 @@ class LibraryReader : public tinyobj::MaterialReader {
         const auto path = resolve_reference(obj_.file, trimmed(reference));
         if (!path) fail(obj_.file, element, "must be a file in the scene's folder");
         if (!obj_.libraries.insert(*path).second) return false;
-        std::error_code no_name;  // of a file: too long
-        if (std::filesystem::exists(*path, no_name)) {
+        if (std::filesystem::exists(status_of(*path))) {
             read_library(obj_, reference, *path);
         } else {
             warn(obj_.scene, element, "does not exist");

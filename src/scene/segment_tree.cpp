@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -20,7 +19,16 @@ bool overlaps(const glm::dvec3& middle, const glm::dvec3& half, const glm::dvec3
     return at - reach <= high && at + reach >= low;
 }
 
+int longest_axis(const glm::dvec3& side) {
+    return side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+}
+
 }  // namespace
+
+void SegmentTree::Box::add(const glm::dvec3& position) {
+    low = glm::min(low, position);
+    high = glm::max(high, position);
+}
 
 SegmentTree::SegmentTree(const std::vector<glm::dvec3>& positions, std::vector<Segment> segments)
     : positions_(positions), segments_(std::move(segments)), order_(segments_.size()) {
@@ -33,22 +41,33 @@ glm::dvec3 SegmentTree::doubled_middle(std::uint32_t segment) const {
 }
 
 SegmentTree::Box SegmentTree::box_of(std::uint32_t begin, std::uint32_t end) const {
-    Box box{glm::dvec3(std::numeric_limits<double>::infinity()), {}};
-    box.high = -box.low;
+    Box box;
     for (std::uint32_t i = begin; i < end; ++i)
-        for (const std::uint32_t v : segments_[order_[i]]) {
-            box.low = glm::min(box.low, positions_[v]);
-            box.high = glm::max(box.high, positions_[v]);
-        }
+        for (const std::uint32_t v : segments_[order_[i]]) box.add(positions_[v]);
     return box;
+}
+
+std::array<SegmentTree::Box, 2> SegmentTree::ends_along(int axis, std::uint32_t begin,
+                                                        std::uint32_t end) const {
+    std::array<Box, 2> ends;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const auto& [a, b] = segments_[order_[i]];
+        const bool ascends = positions_[a][axis] <= positions_[b][axis];
+        ends[0].add(positions_[ascends ? a : b]);
+        ends[1].add(positions_[ascends ? b : a]);
+    }
+    return ends;
 }
 
 void SegmentTree::build(std::uint32_t begin, std::uint32_t end) {
     const auto node = nodes_.size();
-    nodes_.push_back({box_of(begin, end), begin, end, 0});
+    const Box box = box_of(begin, end);
+    nodes_.push_back(
+        {box, ends_along(longest_axis(box.high - box.low), begin, end), begin, end, 0});
     if (end - begin <= kLeaf) return;
-    const glm::dvec3 side = nodes_[node].box.high - nodes_[node].box.low;
-    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    Box middles;
+    for (std::uint32_t i = begin; i < end; ++i) middles.add(doubled_middle(order_[i]));
+    const int axis = longest_axis(middles.high - middles.low);
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                      [&](std::uint32_t a, std::uint32_t b) {
@@ -68,6 +87,13 @@ bool SegmentTree::meets(const Slab& slab, const Box& box) {
            overlaps(middle, half, frame.v, 0, slab.size.y);
 }
 
+// Twice the precision, so that rounding loses none.
+bool SegmentTree::meets_plane(const Slab& slab, const Box& box) {
+    const glm::dvec3 middle = 0.5 * (box.low + box.high) - slab.frame.origin;
+    const glm::dvec3 half = 0.5 * (box.high - box.low) + 2 * slab.precision;
+    return overlaps(middle, half, slab.frame.normal, 0, 0);
+}
+
 bool SegmentTree::lies_in_plane(const Slab& slab, std::uint32_t segment) const {
     return std::ranges::all_of(segments_[segment], [&](std::uint32_t v) {
         const double height = glm::dot(positions_[v] - slab.frame.origin, slab.frame.normal);
@@ -75,20 +101,24 @@ bool SegmentTree::lies_in_plane(const Slab& slab, std::uint32_t segment) const {
     });
 }
 
-std::vector<std::uint32_t> SegmentTree::in(const Slab& slab) const {
+std::vector<std::uint32_t> SegmentTree::in(const Slab& slab, std::size_t* looks) const {
     std::vector<std::uint32_t> found, open;
     if (!nodes_.empty()) open.push_back(0);
     while (!open.empty()) {
         const std::uint32_t index = open.back();
         const Node& node = nodes_[index];
         open.pop_back();
-        if (!meets(slab, node.box)) continue;
+        if (looks) ++*looks;
+        if (!meets_plane(slab, node.ends[0]) || !meets_plane(slab, node.ends[1]) ||
+            !meets(slab, node.box))
+            continue;
         if (node.upper != 0) {
             open.insert(open.end(), {node.upper, index + 1});
             continue;
         }
         for (std::uint32_t i = node.begin; i < node.end; ++i)
-            if (lies_in_plane(slab, order_[i])) found.push_back(order_[i]);
+            if (lies_in_plane(slab, order_[i]) && meets(slab, box_of(i, i + 1)))
+                found.push_back(order_[i]);
     }
     std::ranges::sort(found);
     return found;

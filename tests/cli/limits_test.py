@@ -36,6 +36,9 @@ class Memory(LimitsTest):
     def assert_estimated(self, scene, *options):
         # Whether kernels had to be compiled is not for the test to say: first they are not to be.
         self.report_of(scene, *options)
+        self.assert_near(scene, *options)
+
+    def assert_near(self, scene, *options):
         report, _ = self.report_of(scene, *options)
         estimate, peak = report["estimate"]["memory_bytes"], report["peak_memory_bytes"]
         self.assertLess(abs(estimate / peak - 1), 0.25, f"{scene} {options}: {estimate} {peak}")
@@ -50,6 +53,12 @@ class Memory(LimitsTest):
     def test_pairs_of_near_patches_are_estimated_too(self):
         self.assert_estimated("cornell.gltf", "--quality", "draft", "--max-shots", "3",
                               "--sampling-error", "1e-9")
+
+    def test_what_a_gather_takes_is_estimated_too(self):
+        options = ("--quality", "draft", "--max-shots", "3", "--patch-size", "2", "--gather", "16")
+        self.report_of("cornell.gltf", *options)  # its kernels, for fewer texels
+        for error in "0.02", "0":
+            self.assert_near("cornell.gltf", *options, "--texel-size", "0.0025", "--gather-error", error)
 
     def test_info_and_report_tell_the_same(self):
         options = ("--quality", "draft", "--row-memory", "1", "--layers", "shots")

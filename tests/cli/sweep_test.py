@@ -25,6 +25,9 @@ class CommandLine(scenes.InFolder):
 
 
 class Sweep(CommandLine):
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.folder.iterdir()}
+
     def test_smoke_stop_and_resume(self):
         self.sweep()
         file = self.folder / "sweep.csv"
@@ -60,6 +63,22 @@ class Sweep(CommandLine):
             self.assertEqual(1, result.returncode)
             self.assertTrue(result.stderr.startswith("sweep.csv: "), result.stderr)
             self.assertEqual(content, file.read_text(encoding="utf-8"))
+
+    def test_no_file_of_any_scene_is_taken_for_a_sweep(self):
+        self.write("scene.mtl", scenes.MATERIALS + "map_Kd empty.png\n")
+        self.write("empty.png", "")
+        self.write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        (self.folder / "a.csv").symlink_to("scene.mtl")
+        (self.folder / "b.csv").symlink_to("scene.obj")
+        for swept in (("scene.obj",), ("other.obj", "scene.obj"), ("scene.obj", "other.obj")):
+            for output, what in (("empty.png", "a file of the scene"),
+                                 ("a.csv", "a file of the scene"), ("b.csv", "the scene")):
+                with self.subTest(swept=swept, output=output):
+                    before = self.files()
+                    result = self.run_hemirad("sweep", *swept, "--smoke", "-o", output)
+                    line = f"hemirad: {output}: would overwrite {what}\n"
+                    self.assertEqual((1, line), (result.returncode, result.stderr))
+                    self.assertEqual(before, self.files())
 
 
 class MachineModel(CommandLine):
