@@ -1,8 +1,10 @@
 #include "solver/forecast.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "solver/solver.h"
 #include "solver/stopwatch.h"
@@ -31,24 +33,44 @@ struct Exchange {
     Table reflectance;  // [band][group]
 };
 
-// Members of a group reflect alike, and emit or do not.
-std::vector<float> material_of(const PatchLight& light, std::size_t stride, std::uint32_t shooter) {
+// Members of a group reflect alike, to multiples of `step`, and emit or do not.
+std::vector<float> material_of(const PatchLight& light, std::size_t stride, std::uint32_t shooter,
+                               float step) {
     std::vector<float> material;
     for (std::size_t band = 0; band < light.band_count; ++band) {
-        material.push_back(light.reflectance[band * stride + shooter]);
+        const float reflectance = light.reflectance[band * stride + shooter];
+        material.push_back(step > 0 ? std::round(reflectance / step) : reflectance);
         material.push_back(light.emitted[band * stride + shooter] > 0 ? 1.0f : 0.0f);
     }
     return material;
 }
 
+bool has_more_materials(const PatchLight& light, std::size_t stride, std::uint32_t shooters,
+                        float step, std::size_t most) {
+    std::set<std::vector<float>> materials;
+    for (std::uint32_t shooter = 0; shooter < shooters && materials.size() <= most; ++shooter)
+        materials.insert(material_of(light, stride, shooter, step));
+    return materials.size() > most;
+}
+
+// The finest that leaves no more materials than groups are wanted, each of which looks.
+float step_of_reflectance(const PatchLight& light, std::size_t stride, std::uint32_t shooters,
+                          std::uint32_t wanted) {
+    if (!has_more_materials(light, stride, shooters, 0, wanted)) return 0;
+    float step = 1.0f / 64;
+    while (step < 1 && has_more_materials(light, stride, shooters, step, wanted)) step *= 2;
+    return step;
+}
+
 std::vector<Group> group_shooters(const PatchLight& light, std::size_t stride,
                                   std::uint32_t shooters, std::uint32_t wanted) {
     const std::size_t most = std::max(kLeastMembers, shooters / wanted + 1);
+    const float step = step_of_reflectance(light, stride, shooters, wanted);
     std::map<std::vector<float>, std::size_t> open;  // the group of a material that is not full
     std::vector<Group> groups;
     for (std::uint32_t shooter = 0; shooter < shooters; ++shooter) {
         const auto [place, is_new] =
-            open.try_emplace(material_of(light, stride, shooter), groups.size());
+            open.try_emplace(material_of(light, stride, shooter, step), groups.size());
         if (is_new || groups[place->second].size() == most) {
             place->second = groups.size();
             groups.emplace_back();
@@ -122,12 +144,13 @@ void add_light(const PatchLight& light, std::size_t stride, Exchange& exchange) 
         exchange.unshot.emplace_back();
         exchange.reflectance.emplace_back();
         for (const Group& group : exchange.groups) {
-            double emitted = 0;
-            for (const std::uint32_t member : group)
+            double emitted = 0, reflectance = 0;
+            for (const std::uint32_t member : group) {
                 emitted += light.emitted[band * stride + member];
+                reflectance += light.reflectance[band * stride + member];
+            }
             exchange.unshot.back().push_back(emitted);
-            exchange.reflectance.back().push_back(
-                light.reflectance[band * stride + middle_of(group)]);
+            exchange.reflectance.back().push_back(reflectance / static_cast<double>(group.size()));
         }
     }
 }

@@ -65,10 +65,17 @@ FloatCapsule in_floats(const Capsule& capsule) {
             float(capsule.radius())};
 }
 
+// What chooses a clone runs before ThreadSanitizer is there, which GCC 12 has it call.
+#ifdef __SANITIZE_THREAD__
+#define HEMI_CLONES
+#else
+#define HEMI_CLONES [[gnu::target_clones("avx512f", "avx2", "default")]]
+#endif
+
 // 1 for each sphere that a capsule touches; for any processor, as fast as this one can.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void mark_touched(
-    const FloatCapsule& c, std::size_t count, const float* x, const float* y, const float* z,
-    const float* radius, std::uint8_t* touched) {
+HEMI_CLONES void mark_touched(const FloatCapsule& c, std::size_t count, const float* x,
+                              const float* y, const float* z, const float* radius,
+                              std::uint8_t* touched) {
     for (std::size_t i = 0; i < count; ++i) {
         const float gx = x[i] - c.x, gy = y[i] - c.y, gz = z[i] - c.z;
         float t = (gx * c.along_x + gy * c.along_y + gz * c.along_z) * c.inverse;

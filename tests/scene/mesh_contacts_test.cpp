@@ -9,6 +9,7 @@
 #include <set>
 
 #include "scene/scenes_by_hand.h"
+#include "support/seconds_since.h"
 
 namespace hemirad::mesh_contacts_test {
 namespace {
@@ -503,7 +504,7 @@ Scene blocks_on_a_floor(int side) {
 double seconds_to_mesh(const Scene& scene) {
     const auto start = std::clock();
     EXPECT_GT(mesh_of(scene, 1).patches.size(), scene.faces.size());
-    return double(std::clock() - start) / CLOCKS_PER_SEC;
+    return test::seconds_since(start);
 }
 
 // How they grow does not depend on what else runs.
@@ -521,7 +522,7 @@ TEST(ContactSpeed, OfFacesThatAllCoverEachOtherIsBounded) {
 
     const Mesh mesh = mesh_of(scene, 20);
 
-    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 20);
+    EXPECT_LT(test::seconds_since(start), 20);
     EXPECT_TRUE(std::ranges::any_of(mesh.warnings, [](const std::string& warning) {
         return warning == "hand.obj: too many faces touch to cut all along one another";
     }));

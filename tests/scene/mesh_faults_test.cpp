@@ -3,6 +3,7 @@
 #include <ctime>
 
 #include "scene/scenes_by_hand.h"
+#include "support/seconds_since.h"
 
 namespace hemirad::mesh_faults_test {
 namespace {
@@ -110,7 +111,7 @@ TEST(Overlaps, AreLookedForInBoundedTime) {
 
     const Mesh mesh = mesh_of(scene, kUncut);
 
-    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 10);
+    EXPECT_LT(test::seconds_since(start), 10);
     EXPECT_TRUE(warns(mesh, "too many faces side by side"));
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "scene/scenes_by_hand.h"
+#include "support/seconds_since.h"
 
 namespace hemirad::mesh_grid_test {
 namespace {
@@ -372,7 +373,7 @@ double seconds_to_mesh(const Scene& scene) {
     const auto start = std::clock();
     const Mesh uncut = mesh_of(scene, kUncut);
     EXPECT_EQ(uncut.patches.size(), scene.faces.size());
-    return double(std::clock() - start) / CLOCKS_PER_SEC;
+    return test::seconds_since(start);
 }
 
 // Some three seconds where nothing else runs; how they grow does not depend on what else does.

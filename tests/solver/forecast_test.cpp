@@ -86,5 +86,41 @@ TEST(Forecast, SaysNothingOfWhatIsShortOrStopped) {
     EXPECT_TRUE(solver.forecast());
 }
 
+// A cube of n x n squares a side, no two of one reflectance; four of the last side emit.
+Scene patchwork(int n) {
+    Scene scene = empty_scene();
+    scene.materials.clear();
+    const auto square = [&](const std::vector<glm::dvec3>& side, int i, int j) {
+        const auto at = [&](int column, int row) {
+            return side[0] + (side[1] - side[0]) * (double(column) / n) +
+                   (side[3] - side[0]) * (double(row) / n);
+        };
+        add_face(scene, {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)},
+                 static_cast<std::uint32_t>(scene.materials.size()));
+        scene.materials.push_back(grey(0.2 + 0.6 * double(scene.materials.size()) / (6 * n * n)));
+    };
+    for (const auto& side : room({0, 0, 0}, {1, 1, 1}))
+        for (int i = 0; i < n * n; ++i) square(side, i % n, i / n);
+    for (std::size_t k = 0; k < 4; ++k) scene.materials.rbegin()[k].emission = {10};
+    return scene;
+}
+
+// Of groups there are at most as many as materials that are told apart, and as many again.
+TEST(Forecast, LooksOfManyMaterialsAreFew) {
+    constexpr int kMost = 2 * 256, kSide = 10;
+    const auto mesh = meshed(patchwork(kSide), kUncut);
+    ASSERT_EQ(mesh.patches.size(), 6u * kSide * kSide);
+    const auto device = mp1map::Device::open("");
+    ProgressiveSolver solver(mesh, draft(), device);
+    int looks = 0;
+    ASSERT_TRUE(solver.forecast(0, [&] { return ++looks > 0; }));
+    EXPECT_LE(looks, kMost);
+    EXPECT_GT(looks, 0);
+}
+
+TEST(Forecast, ShotsOfManyMaterialsAreForetold) {
+    expect_shots_foretold(meshed(patchwork(7), kUncut), draft(), 0.1);
+}
+
 }  // namespace
 }  // namespace hemirad::test::forecast_test
