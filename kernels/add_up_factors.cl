@@ -14,11 +14,11 @@ static float block_sum(const __global float* values, int block) {
 
 __kernel void add_up_factors(const __global Shot* salvo, const __global float* all_factors,
                              int stride, __global float* all_sums) {
-    const Part own = own_part(salvo, closing_members(salvo), STACK_SPACING);
+    const Part own = own_part(salvo, closing_members(salvo));
     if (own.member < 0) return;
     const int block_count = stride / kReduceBlock;
     const int pe = own.share * get_local_size(0) + get_local_id(0);
-    const int pe_count = get_global_size(0) / (SALVO * STACK_SPACING);
+    const int pe_count = get_global_size(0) / SALVO;
     const __global float* factors = all_factors + own.station * kFactorKinds * stride;
     __global float* block_sums = all_sums + 2 * own.station * block_count;
     const Blocks blocks = own_blocks(pe, pe_count, block_count);

@@ -37,11 +37,11 @@ __kernel void gather_irradiance(const __global Shot* salvo, __global int* proxel
                                 int disk_proxels, __global float* all_factors, int stride,
                                 const __global float* radiosity, int band_count,
                                 __global float* all_sums) {
-    const Part own = own_part(salvo, closing_members(salvo), STACK_SPACING);
+    const Part own = own_part(salvo, closing_members(salvo));
     if (own.member < 0) return;
     const int block_count = stride / kReduceBlock;
     const int pe = own.share * get_local_size(0) + get_local_id(0);
-    const int pe_count = get_global_size(0) / (SALVO * STACK_SPACING);
+    const int pe_count = get_global_size(0) / SALVO;
     __global int* proxel_count = proxel_counts + own.station * (stride + kCountsGap);
     __global float* factors = all_factors + own.station * kFactorKinds * stride;
     __global float* block_sums = all_sums + own.station * band_count * block_count;

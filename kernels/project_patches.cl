@@ -104,7 +104,7 @@ __kernel void project_patches(const __global Shot* salvo, const __global real_v*
     __local int wire[PE_COUNT];
 #endif
     const int pe = get_local_id(0);
-    const Part own = own_part(salvo, projecting_members(salvo), TILE_SPACING);
+    const Part own = own_part(salvo, projecting_members(salvo));
     // No work-item may leave before a barrier, see prefix_sum.cl: a halted shot has empty lists.
     const bool running = own.member >= 0;
     const int tile = own.share, station = own.station;

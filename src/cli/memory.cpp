@@ -99,18 +99,20 @@ std::uint32_t resolution_of(const SolveOptions& options) {
 }
 
 /// What is touched of the memory for rows: they are made as shooters come, and a solve that
-/// converges comes to most of them. Where there is certainly not room for all, nobody asks what
-/// they see.
-std::uint64_t touched_row_bytes(const Mesh& mesh, const SolveOptions& options,
+/// converges comes to most of them; those that look ahead have theirs too. Where
+/// there is certainly not room for all, nobody asks what they see, nor of a mesh that takes long.
+std::uint64_t touched_row_bytes(const Mesh& mesh, const SolveOptions& options, std::uint32_t salvo,
                                 std::uint64_t allocated) {
     constexpr double kLeastSeen = 0.05;
-    const std::uint64_t patches = mesh.patches.size();
-    const std::uint64_t rows =
-        std::min<std::uint64_t>(options.solver.max_shots, mesh.shooter_count());
+    constexpr std::uint64_t kManyPatches = 200'000;
+    const std::uint64_t patches = mesh.patches.size(), shooters = mesh.shooter_count();
+    const std::uint64_t shots = std::min<std::uint64_t>(options.solver.max_shots, shooters);
+    const std::uint64_t rows = std::min(shooters, shots * salvo);
     const auto bytes = [&](double share) {
         return rows * estimated_row_bytes(share * static_cast<double>(patches), patches);
     };
     if (bytes(kLeastSeen) >= allocated) return allocated;
+    if (patches > kManyPatches) return std::min(allocated, whole_pages(bytes(1)));
     return std::min(allocated, whole_pages(bytes(seen_share(mesh))));
 }
 
@@ -132,7 +134,8 @@ MemoryParts on_device(const Mesh& mesh, const SolveOptions& options,
         with_rows(usable_row_bytes(solver.row_bytes, shooters, patches, device)) - plain;
     return {{"patches and plane on the device", plain,
              "raise --patch-size, lower --resolution or --salvo"},
-            {"rows of form factors", device.is_cpu ? touched_row_bytes(mesh, options, rows) : rows,
+            {"rows of form factors",
+             device.is_cpu ? touched_row_bytes(mesh, options, salvo, rows) : rows,
              "lower --row-memory"}};
 }
 
@@ -166,17 +169,17 @@ MemoryParts while_pairing(const Mesh& mesh, std::uint64_t finds) {
                   {{"pairs of near patches", near_pairs_bytes(mesh, finds), kNearPairsAdvice}});
 }
 
-MemoryParts while_solving(const Mesh& mesh, const SolveOptions& options,
-                          const mp1map::DeviceSummary& device, std::uint64_t finds) {
+MemoryParts while_solving(const Mesh& mesh, const SolveOptions& options, bool is_cpu,
+                          const MemoryParts& on_device, std::uint64_t finds) {
     const MemoryPart solution = solutions(mesh, options);
     const std::uint64_t upload = kUploadBytes * mesh.patches.size();
     // A patch and a factor, on the host and, where that is the same memory, on the device.
-    const std::uint64_t near = 8 * finds * (device.is_cpu ? 2 : 1);
+    const std::uint64_t near = 8 * finds * (is_cpu ? 2 : 1);
     MemoryParts parts = at_all_times(mesh);
     parts.push_back({"arrays for the device, solution", std::max(upload, solution.bytes),
                      "raise --patch-size"});
     parts.push_back({"pairs of near patches", near, kNearPairsAdvice});
-    return device.is_cpu ? joined(parts, on_device(mesh, options, device)) : parts;
+    return is_cpu ? joined(parts, on_device) : parts;
 }
 
 MemoryPart gathered_light(const Mesh& mesh, const ChartLayout& layout,
@@ -277,9 +280,9 @@ MemoryParts while_writing(const Mesh& mesh, const ChartLayout& layout,
 
 /// Interim pictures are made beside the solver.
 MemoryParts while_solving_and_writing(const Mesh& mesh, const ChartLayout& layout,
-                                      const SolveOptions& options,
-                                      const mp1map::DeviceSummary& device, std::uint64_t finds) {
-    MemoryParts parts = while_solving(mesh, options, device, finds);
+                                      const SolveOptions& options, bool is_cpu,
+                                      const MemoryParts& on_device, std::uint64_t finds) {
+    MemoryParts parts = while_solving(mesh, options, is_cpu, on_device, finds);
     if (options.snapshots.shots > 0 || options.snapshots.seconds > 0)
         parts.push_back(lightmap(mesh, layout, options));
     return parts;
@@ -352,7 +355,9 @@ std::uint64_t total(const MemoryParts& parts) {
 MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
                                const SolveOptions& options, const mp1map::DeviceSummary& device) {
     MemoryEstimate estimate;
-    estimate.device_bytes = total(on_device(mesh, options, device));
+    const MemoryParts read = so_far();  // before more is taken to estimate the rest
+    const MemoryParts solving = on_device(mesh, options, device);
+    estimate.device_bytes = total(solving);
     if (options.gather)
         estimate.device_bytes = std::max(
             estimate.device_bytes,
@@ -360,8 +365,8 @@ MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
     estimate.compiler_bytes = kCompiler + (options.gather ? kGatherCompiler : 0);
     const std::uint64_t finds = near_finds(mesh, options.solver);
     for (auto& parts :
-         {so_far(), while_pairing(mesh, finds),
-          while_solving_and_writing(mesh, layout, options, device, finds),
+         {read, while_pairing(mesh, finds),
+          while_solving_and_writing(mesh, layout, options, device.is_cpu, solving, finds),
           while_gathering(mesh, layout, options, device), while_writing(mesh, layout, options)})
         if (total(parts) > estimate.bytes()) estimate.parts = parts;
     return estimate;

@@ -35,21 +35,21 @@ std::uint64_t list_capacity(std::uint64_t stride) {
     return std::max(kLeastListEntries, kListEntriesPerPatch * stride);
 }
 
+// What lies behind the last unit of kept rows is read as well, a vector at a time.
+constexpr std::uint64_t kBehindRows = 16;  // words
+
 // Units of kept rows (kernels/rows.clh): as many as the bytes hold, at most those of rows without
 // zeros, one for each shooter, and of what is left of PEs' extents.
 std::uint32_t row_units(std::uint64_t shooters, std::uint64_t stride, std::uint64_t row_bytes,
                         std::uint64_t pe_count) {
-    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     constexpr std::uint64_t kBlockUnits = (1 + kRowBitWords + kReduceBlock) / kRowUnit + 1;
     const std::uint64_t all =
         (shooters * (stride / kReduceBlock) * kBlockUnits / (kExtentUnits - 2 * kBlockUnits) +
          2 * pe_count) *
         kExtentUnits;
-    return static_cast<std::uint32_t>(std::min({row_bytes / (4 * kRowUnit), all, kMost}));
+    const std::uint64_t words = std::max(std::min(row_bytes, kMostRowBytes) / 4, kBehindRows);
+    return static_cast<std::uint32_t>(std::min((words - kBehindRows) / kRowUnit, all));
 }
-
-// What lies behind the last unit is read as well, a vector at a time.
-constexpr std::size_t kBehindRows = 16;
 
 std::string definition(const char* name, std::uint64_t value) {
     return std::string(" -D") + name + "=" + std::to_string(value);
@@ -62,11 +62,8 @@ bool needs_owners(const PipelineSettings& settings) {
     return settings.keep_owners || settings.form_factor == FormFactorMode::analytic;
 }
 
-// Groups of a launch for each that works, see kernels/progress.clh; more make no difference.
-std::size_t spacing_of(std::size_t groups, const mp1map::PeArray& array) {
-    constexpr std::size_t kGroups = 512, kMost = 8;
-    return array.is_on_cpu ? std::clamp<std::size_t>(kGroups / groups, 1, kMost) : 1;
-}
+// Groups of a launch for each that works on the flux, see kernels/progress.clh.
+std::uint32_t flux_spacing(const mp1map::PeArray& array) { return array.is_on_cpu ? 4 : 1; }
 
 std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution,
                           std::uint32_t corner_count, std::size_t bands, bool two_levels,
@@ -77,10 +74,7 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            definition("CORNERS", corner_count) + definition("BANDS", bands) +
            definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
            definition("BROADCAST_PATCHES", array.broadcast_patches()) +
-           definition("SALVO", settings.salvo) +
-           definition("STACK_SPACING", spacing_of(settings.salvo * array.array_count, array)) +
-           definition("TILE_SPACING",
-                      spacing_of(settings.salvo * count_tiles(resolution, array), array)) +
+           definition("SALVO", settings.salvo) + definition("FLUX_SPACING", flux_spacing(array)) +
            flag("TWO_LEVELS", two_levels) +
            flag("LAYOUT_BLOCK", array.layout == mp1map::Layout::block) +
            flag("EVALUATE_INCREMENTAL", settings.variants.incremental) +
@@ -366,19 +360,16 @@ void ShotPipeline::load(const PatchArrays& patches) {
 
 mp1map::Kernel& ShotPipeline::kernel(const std::string& name) { return kernels_.at(name); }
 
-mp1map::Grid ShotPipeline::stack_grid() const {
-    const std::size_t spacing = spacing_of(std::size_t{salvo_} * array_.array_count, array_);
-    return {array_.array_count * spacing, array_.pe_count()};
+mp1map::Grid ShotPipeline::flux_grid() const {
+    return {array_.array_count * flux_spacing(array_), array_.pe_count()};
 }
 
 mp1map::Grid ShotPipeline::salvo_stack_grid() const {
-    const std::size_t groups = std::size_t{salvo_} * array_.array_count;
-    return {groups * spacing_of(groups, array_), array_.pe_count()};
+    return {std::size_t{salvo_} * array_.array_count, array_.pe_count()};
 }
 
 mp1map::Grid ShotPipeline::salvo_tile_grid() const {
-    const std::size_t groups = std::size_t{salvo_} * tile_count_;
-    return {groups * spacing_of(groups, array_), array_.pe_count()};
+    return {std::size_t{salvo_} * tile_count_, array_.pe_count()};
 }
 
 void ShotPipeline::init_plane() {
@@ -459,13 +450,13 @@ void ShotPipeline::spread_residual() {
 }
 
 void ShotPipeline::update_radiosity() {
-    acu_.issue(kernel("update_radiosity"), stack_grid(), shot_, shot_flux_, proxel_count_,
+    acu_.issue(kernel("update_radiosity"), flux_grid(), shot_, shot_flux_, proxel_count_,
                std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, row_pool_,
                row_extents_, shot_rows_, received_, received_rest_);
 }
 
 void ShotPipeline::update_unshot() {
-    acu_.issue(kernel("update_unshot"), stack_grid(), shot_, shot_flux_, shot_rows_,
+    acu_.issue(kernel("update_unshot"), flux_grid(), shot_, shot_flux_, shot_rows_,
                std::int32_t(stride_), first_patch_, std::int32_t(shooter_stride_), unshot_,
                reflectance_, band_weight_, summaries_, block_unshot_);
 }
@@ -477,7 +468,7 @@ void ShotPipeline::receive_flux() {
         update_unshot();
         return;
     }
-    acu_.issue(kernel("receive_flux"), stack_grid(), shot_, shot_flux_, proxel_count_,
+    acu_.issue(kernel("receive_flux"), flux_grid(), shot_, shot_flux_, proxel_count_,
                std::int32_t(disk_proxels_), factors_, std::int32_t(stride_), rows_, row_pool_,
                row_extents_, shot_rows_, received_, received_rest_, unshot_, reflectance_,
                band_weight_, summaries_, block_unshot_);
@@ -595,6 +586,16 @@ SolveState ShotPipeline::state() {
             shots_of()};
 }
 
+// Directories of rows that nobody has written are the last that were taken: choose_shooter promises
+// them, which comes behind what fills them.
+void ShotPipeline::take_back_promised_rows() {
+    auto pool = acu_.unload(row_pool_);
+    for (const device::Shot& shot : acu_.unload(shot_))
+        if (shot.shooter >= 0 && shot.row_known == 0 && shot.row != 0)
+            pool.front().taken = std::min(pool.front().taken, static_cast<std::uint32_t>(shot.row));
+    acu_.load(row_pool_, std::span<const device::RowPool>(pool));
+}
+
 void ShotPipeline::set_state(const SolveState& state) {
     if (state.unshot.size() != unshot_.size() || state.received.size() != received_.size() ||
         state.received_rest.size() != received_.size() || state.escaped.size() != escaped_.size() ||
@@ -603,6 +604,7 @@ void ShotPipeline::set_state(const SolveState& state) {
     if (state.shots > std::numeric_limits<std::uint32_t>::max() || !is_finite(state.unshot) ||
         !is_finite(state.received) || !is_finite(state.received_rest) || !is_finite(state.escaped))
         throw InputError("no state that a solve comes to");
+    take_back_promised_rows();
     auto salvo = std::vector(member_count(), first_shot());
     device::Shot& books = salvo.front();
     books.rows_kept = shot().rows_kept;
@@ -637,7 +639,8 @@ std::vector<double> ShotPipeline::escaped() {
 
 double ShotPipeline::room_for_rows() {
     const device::RowPool pool = acu_.unload(row_pool_).front();
-    return static_cast<double>(pool.size) * shot().rows_kept / pool.taken;
+    const double kept = shot().rows_kept;
+    return pool.taken > pool.size ? kept : kept * pool.size / pool.taken;
 }
 
 std::vector<std::uint32_t> ShotPipeline::shots_of() { return acu_.unload(shots_of_); }

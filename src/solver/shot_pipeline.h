@@ -64,6 +64,9 @@ struct PipelineSettings {
 /// factors. Fixed: it decides the order in which fluxes are added.
 inline constexpr std::uint32_t kReducePes = 64;
 
+/// Rows are found by 31 bits of units of two words.
+inline constexpr std::uint64_t kMostRowBytes = std::uint64_t{1} << 34;
+
 /// Flux and reflectance of the solved bands, [band * shooter_stride + shooter]; the fluxes of a
 /// band add up to 1, or to 0 where it is dark.
 struct PatchLight {
@@ -178,6 +181,7 @@ class ShotPipeline {
                        std::uint32_t corner_count);
     void load_shooters(const PatchArrays& patches, const ShooterArrays& shooters);
     void load_near_pairs(const NearPairs& pairs);
+    void take_back_promised_rows();
     template <class T>
     std::vector<T> projected(const mp1map::Plural<T>& plural);  // what is set up of [pe][slot]
     // Those that shoot and those that look ahead, as MEMBERS in progress.clh.
@@ -185,7 +189,7 @@ class ShotPipeline {
     std::uint32_t gathered_bands() const {
         return static_cast<std::uint32_t>(radiosity_.size() / stride_);
     }
-    mp1map::Grid stack_grid() const;  // one array's stacks
+    mp1map::Grid flux_grid() const;
     mp1map::Grid salvo_stack_grid() const;
     mp1map::Grid salvo_tile_grid() const;
 

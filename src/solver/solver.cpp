@@ -148,8 +148,9 @@ std::uint64_t most_bands(const mp1map::DeviceSummary& device, const mp1map::PeAr
 
 std::uint64_t usable_row_bytes(const std::optional<std::uint64_t>& wanted, std::uint64_t shooters,
                                std::uint64_t patches, const mp1map::DeviceSummary& device) {
-    const std::uint64_t bytes = std::min(
-        {wanted.value_or(kDefaultRowBytes), device.global_memory / 4, device.max_allocation});
+    const std::uint64_t bytes =
+        std::min({wanted.value_or(kDefaultRowBytes), device.global_memory / 4,
+                  device.max_allocation, kMostRowBytes});
     const bool worthwhile = bytes * kMostShootersPerRow >= shooters * 4 * patches;
     return wanted || worthwhile ? bytes : 0;
 }
@@ -284,9 +285,9 @@ std::optional<Forecast> ProgressiveSolver::forecast(double least_seconds,
                                                     const std::function<bool()>& go_on) {
     const PatchLight light = patch_light(mesh_, plan_, pipeline_.shooter_stride());
     const auto result = hemirad::forecast(
-        pipeline_, {light, shooter_of_patches(mesh_),
-                    static_cast<std::uint32_t>(mesh_.shooter_count()), settings_.tolerance,
-                    settings_.max_shots, least_seconds, go_on});
+        pipeline_,
+        {light, shooter_of_patches(mesh_), static_cast<std::uint32_t>(mesh_.shooter_count()),
+         settings_.tolerance, settings_.max_shots, least_seconds, go_on});
     pipeline_.acu().forget_seconds();
     find_first_shooters();
     return result;

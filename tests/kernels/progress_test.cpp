@@ -29,9 +29,9 @@ struct Part {
 };
 
 std::vector<Part> parts_of(KernelRun& run, const std::vector<device::Shot>& salvo,
-                           std::uint32_t groups, std::int32_t spacing = 1) {
+                           std::uint32_t groups) {
     auto parts = run.plural(std::vector<std::int32_t>(3 * groups));
-    run.issue({groups, 1}, run.plural(salvo), spacing, parts);
+    run.issue({groups, 1}, run.plural(salvo), parts);
     const auto words = run.acu().unload(parts);
     std::vector<Part> result;
     for (std::size_t group = 0; group < groups; ++group)
@@ -57,44 +57,36 @@ std::set<std::tuple<int, int, int>> expected_parts(unsigned known, std::uint32_t
     return expected;
 }
 
-void expect_dealt(std::uint32_t shares, std::uint32_t spacing) {
-    auto run = dealing();
-    for (unsigned known = 0; known < 1u << kMembers; ++known) {
-        if (kMembers - static_cast<unsigned>(std::popcount(known)) > kSalvo) continue;
-        std::set<std::tuple<int, int, int>> dealt;
-        std::size_t busy = 0;
-        for (const auto& [member, station, share] :
-             parts_of(run, salvo_of(known), kSalvo * shares * spacing, std::int32_t(spacing))) {
-            if (member < 0) continue;
-            ++busy;
-            dealt.emplace(member, station, share);
-        }
-
-        EXPECT_EQ(dealt, expected_parts(known, shares)) << known;
-        EXPECT_EQ(busy, dealt.size()) << known;
-    }
-}
-
 TEST(Progress, EachShareOfWhoeverLooksIsOneGroups) {
-    for (const std::uint32_t shares : {1u, 3u, 8u}) expect_dealt(shares, 1);
-}
-
-TEST(Progress, SoItIsWhereFewGroupsWork) {
+    auto run = dealing();
     for (const std::uint32_t shares : {1u, 3u, 8u})
-        for (const std::uint32_t spacing : {2u, 5u, 8u}) expect_dealt(shares, spacing);
+        for (unsigned known = 0; known < 1u << kMembers; ++known) {
+            if (kMembers - static_cast<unsigned>(std::popcount(known)) > kSalvo) continue;
+            std::set<std::tuple<int, int, int>> dealt;
+            std::size_t busy = 0;
+            for (const auto& [member, station, share] :
+                 parts_of(run, salvo_of(known), kSalvo * shares)) {
+                if (member < 0) continue;
+                ++busy;
+                dealt.emplace(member, station, share);
+            }
+
+            EXPECT_EQ(dealt, expected_parts(known, shares)) << known;
+            EXPECT_EQ(busy, dealt.size()) << known;
+        }
 }
 
-// Of two cores of which one takes the first half of the groups and one more, as PoCL has them, each
-// works on as much as the other.
+// Of two cores that take a half of the groups each, each works on as much as the other.
 TEST(Progress, TwoHalvesOfTheGroupsHaveAsMuchToDo) {
     auto run = dealing();
     for (const unsigned known : {0x0fu, 0x1fu, 0x3fu, 0x7fu, 0xfeu}) {
-        const auto parts = parts_of(run, salvo_of(known), kSalvo * 8 * 2, 2);
-        const auto middle = parts.begin() + std::ptrdiff_t(parts.size() / 2 + 1);
-        const auto works = [](const Part& part) { return part.member >= 0; };
-        EXPECT_EQ(std::count_if(parts.begin(), middle, works),
-                  std::count_if(middle, parts.end(), works))
-            << known;
+        const auto parts = parts_of(run, salvo_of(known), kSalvo * 8);
+        const auto busy = [&](std::size_t first) {
+            return std::count_if(parts.begin() + std::ptrdiff_t(first),
+                                 parts.begin() + std::ptrdiff_t(first + parts.size() / 2),
+                                 [](const Part& part) { return part.member >= 0; });
+        };
+        EXPECT_EQ(busy(0), busy(parts.size() / 2)) << known;
     }
 }
 
@@ -102,11 +94,21 @@ TEST(Progress, TwoHalvesOfTheGroupsHaveAsMuchToDo) {
 std::vector<std::int32_t> places_of(std::uint32_t groups, std::uint32_t local,
                                     std::uint32_t spacing) {
     KernelOptions options;
-    options.stack_spacing = spacing;
+    options.flux_spacing = spacing;
     auto run = KernelRun::probe("progress", "place", options);
     auto places = run.plural(std::vector<std::int32_t>(2 * groups * local));
     run.issue({groups, local}, places);
     return run.acu().unload(places);
+}
+
+// PoCL's first thread takes half of the groups and one more.
+TEST(Progress, TwoThreadsHaveAsManyPesToUpdateFluxes) {
+    const auto places = places_of(8 * 4, 2, 4);
+    std::size_t first = 0, second = 0;
+    for (std::size_t i = 0; i < places.size(); i += 2)
+        if (places[i] >= 0) ++(i / 2 < 17 * 2 ? first : second);
+
+    EXPECT_EQ(first, second);
 }
 
 TEST(Progress, OfAllGroupsThatWorkOnTheSameEveryFewthHasItsPes) {

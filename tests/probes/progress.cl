@@ -2,8 +2,8 @@
 // and where all work on the same, each work-item, [work-item][PE, count].
 #include "progress.clh"
 
-__kernel void deal(const __global Shot* salvo, int spacing, __global int* parts) {
-    const Part part = own_part(salvo, projecting_members(salvo), spacing);
+__kernel void deal(const __global Shot* salvo, __global int* parts) {
+    const Part part = own_part(salvo, projecting_members(salvo));
     __global int* to = parts + 3 * get_group_id(0);
     to[0] = part.member;
     to[1] = part.station;

@@ -98,6 +98,23 @@ TEST_P(KnownRows, GoOnOverPauses) {
     expect_equal(solved(mesh, how, kAnyBytes), whole);
 }
 
+// Each time others are to shoot next, and to have rows.
+TEST_P(KnownRows, FindAsMuchRoomWhenTheStateWasSetManyTimes) {
+    const Mesh mesh = meshed(scene_named("furnace.obj"), 0.25);
+    auto how = this->how();
+    how.salvo = 8;
+    how.row_bytes = 60'000;
+    const auto device = mp1map::Device::open("");
+    ProgressiveSolver once(mesh, how, device), often(mesh, how, device);
+
+    for (int i = 0; i < 3000; ++i) often.resume(often.state());
+    EXPECT_EQ(once.solve(go_on), Stop::converged);
+    EXPECT_EQ(often.solve(go_on), Stop::converged);
+
+    EXPECT_EQ(once.repeated_shots(), once.solution().shots - mesh.patches.size());
+    EXPECT_EQ(often.repeated_shots(), once.repeated_shots());
+}
+
 TEST(RowBytes, AreAQuarterOfTheDeviceAtMost) {
     auto device = roomy_device();
     EXPECT_EQ(usable_row_bytes({}, 1000, 1000, device), std::uint64_t{1} << 30);

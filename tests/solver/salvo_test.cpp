@@ -200,7 +200,8 @@ TEST(Salvos, LeaveTheRowsWithinTheirMemory) {
         return estimated_device_bytes(1024, 1024, 4, 1, 64, FormFactorMode::count, row_bytes,
                                       {4, 1, 16, 64, 64}, 8);
     };
-    EXPECT_EQ(bytes(kBytes) - bytes(0), kBytes);
+    EXPECT_LE(bytes(kBytes) - bytes(0), kBytes);
+    EXPECT_GT(bytes(kBytes) - bytes(0), kBytes - 128);
 }
 
 TEST(Salvos, AreOfEightUnlessTimeOrMemoryIsNoMatter) {

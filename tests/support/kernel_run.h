@@ -19,7 +19,7 @@ namespace hemirad::test {
 struct KernelOptions {
     std::uint32_t lanes = 1, pe_width = 1, pe_height = 1, tile_width = 1, tile_height = 1;
     std::uint32_t resolution = 64, corners = 4, bands = 1, prefix_pes = 1, reduce_pes = 1;
-    std::uint32_t salvo = 1, stack_spacing = 1;
+    std::uint32_t salvo = 1, flux_spacing = 1;
     bool two_levels = false;
 
     std::string text() const {
@@ -31,7 +31,7 @@ struct KernelOptions {
                define("TILE_HEIGHT", tile_height) + define("RESOLUTION", resolution) +
                define("CORNERS", corners) + define("BANDS", bands) +
                define("PREFIX_PES", prefix_pes) + define("REDUCE_PES", reduce_pes) +
-               define("SALVO", salvo) + define("STACK_SPACING", stack_spacing) +
+               define("SALVO", salvo) + define("FLUX_SPACING", flux_spacing) +
                (two_levels ? " -DTWO_LEVELS" : "");
     }
 };
