@@ -34,7 +34,7 @@ def read_accessor(gltf, blob, index):
 def read_triangles(gltf):
     """(object, material index, three corners), in file order."""
     blob = base64.b64decode(gltf["buffers"][0]["uri"].split(",", 1)[1])
-    for node in gltf["nodes"]:
+    for node in (n for n in gltf["nodes"] if "mesh" in n):  # others hold cameras
         for primitive in gltf["meshes"][node["mesh"]]["primitives"]:
             points = read_accessor(gltf, blob, primitive["attributes"]["POSITION"])
             indices = read_accessor(gltf, blob, primitive["indices"])
