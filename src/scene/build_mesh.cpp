@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -194,26 +195,22 @@ class Mesher {
     }
 
     void add_triangles(const Flat& flat, std::uint32_t surface) {
-        find_corners(flat.face);
+        const auto corner_of = corners_of(flat.face);
         for (const auto piece : faces_.pieces(flat))
             for (std::size_t i = 1; i + 1 < piece.size(); ++i)
                 mesh_.face_triangles.push_back(
                     {flat.face,
                      surface,
-                     {corner_at(piece[0]), corner_at(piece[i]), corner_at(piece[i + 1])}});
+                     {corner_of.at(piece[0]), corner_of.at(piece[i]), corner_of.at(piece[i + 1])}});
     }
 
-    void find_corners(std::uint32_t face) {
-        corners_.clear();
+    /// By vertex, the first corner of the face that is there.
+    std::map<std::uint32_t, std::uint32_t> corners_of(std::uint32_t face) const {
+        std::map<std::uint32_t, std::uint32_t> corner_of;
         const auto& corners = scene_.faces[face].vertices;
         for (std::uint32_t i = 0; i < corners.size(); ++i)
-            corners_.emplace_back(vertex_of_position_[corners[i]], i);
-        std::ranges::sort(corners_);
-    }
-
-    /// The first corner of the face that is there.
-    std::uint32_t corner_at(std::uint32_t vertex) const {
-        return std::ranges::lower_bound(corners_, std::pair(vertex, 0u))->second;
+            corner_of.try_emplace(vertex_of_position_[corners[i]], i);
+        return corner_of;
     }
 
     void add_backs() {
@@ -363,7 +360,6 @@ class Mesher {
     Precision precision_;
     VertexWelder vertices_;
     std::vector<std::uint32_t> vertex_of_position_;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> corners_;  ///< of a face: vertex, corner
     FlatFaces faces_;
     Parts parts_;
     std::vector<Group> groups_;
