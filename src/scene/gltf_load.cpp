@@ -2,7 +2,6 @@
 #include <cstring>
 #include <fstream>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "scene/gltf_file.h"

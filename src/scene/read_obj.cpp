@@ -6,7 +6,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "scene/input_file.h"

@@ -28,10 +28,11 @@ struct ForecastTask {
 };
 
 /// Shooters of one material, or of like ones where there are many, form groups, of neighbours as
-/// far as that goes, and a member of each looks. What patches receive of it is what its group sends to theirs; by these factors groups
-/// shoot until the tolerance is met: the loop of sec. 1.5.4 for the price of a few hundred looks,
-/// as if all members of a group had the same flux. Looks and shots by known rows are timed.
-/// Afterwards a shot at nothing is to follow, as after set_state(); rows that were found are kept.
+/// far as that goes, and a member of each looks. What patches receive of it is what its group
+/// sends to theirs; by these factors groups shoot until the tolerance is met: the loop of sec.
+/// 1.5.4 for the price of a few hundred looks, as if all members of a group had the same flux.
+/// Looks and shots by known rows are timed. Afterwards a shot at nothing is to follow, as after
+/// set_state(); rows that were found are kept.
 std::optional<Forecast> forecast(ShotPipeline& pipeline, const ForecastTask& task);
 
 }  // namespace hemirad
