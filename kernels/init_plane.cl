@@ -2,7 +2,8 @@
 #include "hemisphere.clh"
 #include "plane.clh"
 
-__kernel void init_plane(__global real_v* roots) {
+__kernel __attribute__((reqd_work_group_size(PE_COUNT, 1, 1))) void init_plane(
+    __global real_v* roots) {
     const int tile = get_group_id(0), pe = get_local_id(0);
     for (int layer = 0; layer < LAYERS; ++layer)
         roots[tile * TILE_VECTORS + plural_index(layer, pe)] = root_at(

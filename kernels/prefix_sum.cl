@@ -6,8 +6,9 @@
 #include "tiles.clh"
 
 // PoCL 3.1 miscompiles a kernel whose work-items may leave before a barrier, so all of them stay.
-__kernel void prefix_sum(__global Shot* salvo, __global int* restrict all_counts, int stack_count,
-                         __global int* restrict list_ends, uint capacity) {
+__kernel __attribute__((reqd_work_group_size(PREFIX_PES, 1, 1))) void prefix_sum(
+    __global Shot* salvo, __global int* restrict all_counts, int stack_count,
+    __global int* restrict list_ends, uint capacity) {
     __local ulong sums[PREFIX_PES];
     const int pe = get_local_id(0), station = get_group_id(0);
     const int member = member_at(salvo, projecting_members(salvo), station);

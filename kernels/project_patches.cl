@@ -90,12 +90,12 @@ static void clear_plane(int pe, int escaped, const __global real_v* roots, __loc
     }
 }
 
-__kernel void project_patches(const __global Shot* salvo, const __global real_v* roots,
-                              const __global Projection* projections,
-                              const __global Rectangle* rectangles, const __global int* list_ends,
-                              const __global int* lists, uint capacity, int escaped,
-                              __global int* proxel_counts, __global int* covered_counts,
-                              __global int_v* owners, __global uint* activity_totals) {
+__kernel __attribute__((reqd_work_group_size(PE_COUNT, 1, 1))) void project_patches(
+    const __global Shot* salvo, const __global real_v* roots,
+    const __global Projection* projections, const __global Rectangle* rectangles,
+    const __global int* list_ends, const __global int* lists, uint capacity, int escaped,
+    __global int* proxel_counts, __global int* covered_counts, __global int_v* owners,
+    __global uint* activity_totals) {
     __local real_v depth[TILE_VECTORS];
     __local int_v owner[TILE_VECTORS];
     __local Projection batch[BROADCAST_PATCHES];

@@ -12,7 +12,8 @@ constexpr std::uint32_t kBytesPerProxel = 8;  // depth and owner
 constexpr std::uint32_t kBytesPerPatch = 80;  // projection parameters, and room on the X-net
 constexpr std::uint32_t kSpareBytes = 2048;   // that drivers take for themselves
 constexpr std::uint32_t kBatchPatches = 64;   // 4.5 KiB: two barriers a batch cost nothing then
-constexpr std::uint32_t kArraysPerUnit = 4;   // enough to even out uneven stacks
+constexpr std::uint32_t kCpuStacks = 256, kGpuStacks = 1024;  // PEs of all arrays
+constexpr std::uint32_t kArraysPerUnit = 4;                   // enough to even out uneven stacks
 
 std::uint32_t native_lanes(const DeviceSummary& device) {
     if (!device.is_cpu) return 1;
@@ -101,7 +102,8 @@ PeArray fit_pe_array(const DeviceSummary& device, const PeArrayRequest& request)
         rounded_up(request.tile_height != 0 ? request.tile_height : tile, array.area_height());
     const std::uint32_t wanted = std::max(1u, device.compute_units) * kArraysPerUnit;
     // Large arrays have PEs enough in fewer of them; a stack of a few patches only costs bins.
-    array.array_count = std::clamp(256u / array.pe_count(), 1u, wanted);
+    array.array_count =
+        std::clamp((device.is_cpu ? kCpuStacks : kGpuStacks) / array.pe_count(), 1u, wanted);
     check_local_memory(device, array);
     return array;
 }

@@ -12,8 +12,7 @@
 namespace hemirad {
 namespace {
 
-constexpr std::uint32_t kPrefixPes = 64;  // of prefix_sum, an array a station
-static_assert(std::max(kPrefixPes, kReducePes) <= mp1map::kLeastWorkGroup);
+static_assert(kReducePes <= mp1map::kLeastWorkGroup);
 // A visible patch touches two or three tiles; where more do, the lists are enlarged on demand.
 constexpr std::uint64_t kListEntriesPerPatch = 4, kLeastListEntries = 65536;
 constexpr std::uint32_t kMostListEntries = std::numeric_limits<std::int32_t>::max();
@@ -24,6 +23,12 @@ std::uint32_t quotient_up(std::uint64_t value, std::uint64_t divisor) {
 
 std::uint32_t count_tiles(std::uint32_t resolution, const mp1map::PeArray& array) {
     return quotient_up(resolution, array.tile_width) * quotient_up(resolution, array.tile_height);
+}
+
+// PEs of prefix_sum, an array a station; a GPU's are slow one by one.
+std::uint32_t prefix_pes(const mp1map::PeArray& array) {
+    constexpr std::uint32_t kLeast = mp1map::kLeastWorkGroup;
+    return array.is_on_cpu ? kLeast : std::max(kLeast, array.pe_count());
 }
 
 // Patches a PE manages: whole clusters.
@@ -72,7 +77,7 @@ std::string build_options(const mp1map::PeArray& array, std::uint32_t resolution
            definition("PE_HEIGHT", array.height) + definition("TILE_WIDTH", array.tile_width) +
            definition("TILE_HEIGHT", array.tile_height) + definition("RESOLUTION", resolution) +
            definition("CORNERS", corner_count) + definition("BANDS", bands) +
-           definition("PREFIX_PES", kPrefixPes) + definition("REDUCE_PES", kReducePes) +
+           definition("PREFIX_PES", prefix_pes(array)) + definition("REDUCE_PES", kReducePes) +
            definition("BROADCAST_PATCHES", array.broadcast_patches()) +
            definition("SALVO", settings.salvo) + definition("FLUX_SPACING", flux_spacing(array)) +
            flag("TWO_LEVELS", two_levels) +
@@ -412,7 +417,7 @@ void ShotPipeline::prepare_patches() {
 }
 
 void ShotPipeline::prefix_sum() {
-    acu_.issue(kernel("prefix_sum"), {salvo_, kPrefixPes}, shot_, places_,
+    acu_.issue(kernel("prefix_sum"), {salvo_, prefix_pes(array_)}, shot_, places_,
                std::int32_t(stack_count_), list_end_, std::uint32_t(lists_.size() / salvo_));
 }
 

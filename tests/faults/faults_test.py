@@ -192,7 +192,7 @@ class SmallDevices(Faults):
     def test_give_the_same_bytes(self):
         whole = self.picture_on({})
         for device in ({LOCAL: 32768, ALLOCATION: 128 << 20, GROUP: 64, EXTENSIONS: ""},
-                       {TYPE: GPU, GROUP: 64, LOCAL: 32768}):
+                       {TYPE: GPU, GROUP: 1024, LOCAL: 32768}):
             with self.subTest(device):
                 self.assertEqual(whole, self.picture_on(device))
         with self.subTest("limits of PoCL"):

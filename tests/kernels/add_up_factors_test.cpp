@@ -25,8 +25,8 @@ std::vector<float> block_sums(const std::vector<float>& factors, const Shape& sh
     device::Shot shot{};
     shot.status = kRunning;
     auto sums = run.acu().plural<float>(2 * kStride / kReduceBlock);
-    run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
-              run.plural(factors), std::int32_t(kStride), sums);
+    run.issue(run.fitting({2, std::size_t{shape.width} * shape.height}),
+              run.plural(std::vector{shot}), run.plural(factors), std::int32_t(kStride), sums);
     return run.acu().unload(sums);
 }
 

@@ -41,8 +41,9 @@ Lists binned(const RectangleStacks& rectangles, const Stacks& stacks, const Shap
     shot.status = status;
     auto ends = run.plural(expected.begin);
     auto slots = run.plural(std::vector<std::int32_t>(expected.slots.size(), -7));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(rectangles.rectangles),
-              run.plural(rectangles.heights), std::int32_t(stacks.depth), ends, slots);
+    run.issue(run.fitting(stacks.grid), run.plural(std::vector{shot}),
+              run.plural(rectangles.rectangles), run.plural(rectangles.heights),
+              std::int32_t(stacks.depth), ends, slots);
     return {expected.begin, run.acu().unload(ends), run.acu().unload(slots)};
 }
 

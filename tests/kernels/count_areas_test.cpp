@@ -19,8 +19,9 @@ std::vector<std::int32_t> counts_of(const RectangleStacks& rectangles, const Sta
     device::Shot shot{};
     shot.status = status;
     auto entries = run.plural(std::vector<std::int32_t>(tiles * stacks.count(), -7));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(rectangles.rectangles),
-              run.plural(rectangles.heights), std::int32_t(stacks.depth), entries);
+    run.issue(run.fitting(stacks.grid), run.plural(std::vector{shot}),
+              run.plural(rectangles.rectangles), run.plural(rectangles.heights),
+              std::int32_t(stacks.depth), entries);
     return run.acu().unload(entries);
 }
 

@@ -50,9 +50,10 @@ StackContents stacks_after(const device::Shot& shot, const PatchArrays& arrays,
     KernelRun run("cull_patches", options);
     auto stack = run.plural(std::vector<device::Level>(stacks.slots() / shape.lanes));
     auto heights = run.plural(std::vector<std::int32_t>(stacks.count(), -1));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(clusters_of(arrays)),
-              run.plural(arrays.corners), run.plural(arrays.normals), run.plural(arrays.planes),
-              run.plural(arrays.rooms), std::int32_t(arrays.stride), std::int32_t(stacks.depth), stack, heights);
+    run.issue(run.fitting(stacks.grid), run.plural(std::vector{shot}),
+              run.plural(clusters_of(arrays)), run.plural(arrays.corners),
+              run.plural(arrays.normals), run.plural(arrays.planes), run.plural(arrays.rooms),
+              std::int32_t(arrays.stride), std::int32_t(stacks.depth), stack, heights);
 
     const auto levels = run.acu().unload(stack);
     const auto height = run.acu().unload(heights);

@@ -54,9 +54,9 @@ Sums gathered(const Shape& shape, std::int32_t status = kRunning) {
     salvo[1].status = status;
     auto counts = run.plural(random_counts());
     auto sums = run.acu().plural<float>(2 * kBands * kBlocks);
-    run.issue({4, std::size_t{shape.width} * shape.height}, run.plural(salvo), counts, kDiskProxels,
-              run.acu().plural<float>(1), std::int32_t(kStride), run.plural(random_radiosity()),
-              std::int32_t(kBands), sums);
+    run.issue(run.fitting({4, std::size_t{shape.width} * shape.height}), run.plural(salvo), counts,
+              kDiskProxels, run.acu().plural<float>(1), std::int32_t(kStride),
+              run.plural(random_radiosity()), std::int32_t(kBands), sums);
     return {run.acu().unload(sums), run.acu().unload(counts)};
 }
 

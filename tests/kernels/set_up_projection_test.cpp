@@ -94,7 +94,7 @@ std::vector<Projected> projections_of(const device::Shot& shot, const PatchArray
     auto projections = run.plural(std::vector<device::Projection>(stacks.slots()));
     auto rectangles = run.plural(std::vector<device::Rectangle>(stacks.slots()));
     auto counts = run.plural(std::vector<std::int32_t>(stacks.count()));
-    run.issue(stacks.grid, run.plural(std::vector{shot}), run.plural(arrays.corners),
+    run.issue(run.fitting(stacks.grid), run.plural(std::vector{shot}), run.plural(arrays.corners),
               run.plural(arrays.normals), std::int32_t(arrays.stride), std::int32_t(stacks.depth),
               run.plural(loaded.levels), run.plural(loaded.heights), projections, rectangles,
               counts);

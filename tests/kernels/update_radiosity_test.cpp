@@ -92,9 +92,10 @@ State updated(State state, const Shape& shape) {
     auto row = run.plural(state.row);
     auto words = run.plural(kept.words);
     auto pool = run.plural(kept.pool);
-    run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
-              run.plural(state.shot_flux), counts, state.disk_proxels, run.acu().plural<float>(1),
-              std::int32_t(kStride), words, pool, run.plural(kept.extents), row, received, rest);
+    run.issue(run.fitting({2, std::size_t{shape.width} * shape.height}),
+              run.plural(std::vector{shot}), run.plural(state.shot_flux), counts,
+              state.disk_proxels, run.acu().plural<float>(1), std::int32_t(kStride), words, pool,
+              run.plural(kept.extents), row, received, rest);
     state.counts = run.acu().unload(counts);
     state.received = run.acu().unload(received);
     state.rest = run.acu().unload(rest);
@@ -175,10 +176,10 @@ TEST_P(UpdateRadiosity, OfASalvoEachSendsItsFluxByItsRow) {
     auto shot_rows = run.acu().plural<float>(3 * kStride);
     auto words = run.plural(kept.words);
 
-    run.issue({2, std::size_t{GetParam().width} * GetParam().height}, run.plural(salvo),
-              run.plural(flux), on_device, state.disk_proxels, run.acu().plural<float>(1),
-              std::int32_t(kStride), words, run.plural(kept.pool), run.plural(kept.extents),
-              shot_rows, received, rest);
+    run.issue(run.fitting({2, std::size_t{GetParam().width} * GetParam().height}),
+              run.plural(salvo), run.plural(flux), on_device, state.disk_proxels,
+              run.acu().plural<float>(1), std::int32_t(kStride), words, run.plural(kept.pool),
+              run.plural(kept.extents), shot_rows, received, rest);
 
     kept.words = run.acu().unload(words);
     const auto looked = kept.row(salvo[1].row), ahead = kept.row(salvo[2].row);

@@ -116,9 +116,9 @@ Outcome updated(const State& state, const Shape& shape) {
     auto unshot = run.plural(state.unshot);
     auto summaries = run.acu().plural<device::BlockSummary>(kShooters / kReduceBlock);
     auto block_unshot = run.acu().plural<float>(kShooters / kReduceBlock * state.bands);
-    run.issue({2, std::size_t{shape.width} * shape.height}, run.plural(std::vector{shot}),
-              run.plural(state.shot_flux), run.plural(state.rows), std::int32_t(kStride),
-              run.plural(state.first_patch), std::int32_t(kShooters), unshot,
+    run.issue(run.fitting({2, std::size_t{shape.width} * shape.height}),
+              run.plural(std::vector{shot}), run.plural(state.shot_flux), run.plural(state.rows),
+              std::int32_t(kStride), run.plural(state.first_patch), std::int32_t(kShooters), unshot,
               run.plural(state.reflectance), run.plural(state.weight), summaries, block_unshot);
     return {run.acu().unload(unshot), run.acu().unload(summaries), run.acu().unload(block_unshot)};
 }
@@ -182,8 +182,8 @@ TEST_P(UpdateUnshot, OfASalvoEachHasShotWhatItHad) {
     auto summaries = run.acu().plural<device::BlockSummary>(kShooters / kReduceBlock);
     auto block_unshot = run.acu().plural<float>(kShooters / kReduceBlock);
 
-    run.issue({2, std::size_t{GetParam().width} * GetParam().height}, run.plural(salvo),
-              run.plural(flux), run.plural(state.rows), std::int32_t(kStride),
+    run.issue(run.fitting({2, std::size_t{GetParam().width} * GetParam().height}),
+              run.plural(salvo), run.plural(flux), run.plural(state.rows), std::int32_t(kStride),
               run.plural(state.first_patch), std::int32_t(kShooters), unshot,
               run.plural(state.reflectance), run.plural(state.weight), summaries, block_unshot);
 

@@ -143,8 +143,8 @@ std::uint64_t address_space() {
     return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-// A device with memory of its own may well have it.
 TEST_F(AcuTest, MemoryThatACpuLacksWhenItIsTouchedIsAFailedAllocation) {
+    if (!device_.summary().is_cpu) GTEST_SKIP() << "a device with memory of its own";
     constexpr std::size_t kBytes = std::size_t{1} << 30;
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
@@ -159,8 +159,6 @@ TEST_F(AcuTest, MemoryThatACpuLacksWhenItIsTouchedIsAFailedAllocation) {
     }
     setrlimit(RLIMIT_AS, &before);
 
-    EXPECT_TRUE(!message.empty() || !device_.summary().is_cpu);
-    if (message.empty()) return;
     EXPECT_NE(message.find("allocation of " + std::to_string(kBytes) + " bytes"), message.npos)
         << message;
     EXPECT_NE(message.find("out of memory"), message.npos) << message;

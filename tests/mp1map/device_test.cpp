@@ -74,6 +74,8 @@ TEST(Device, AnUnknownSelectorNamesItselfAndTheDevicesThereAre) {
 }
 
 TEST(Device, OneComputeUnitIsASubDeviceOfOne) {
+    if (!Device::open("").summary().is_divisible) GTEST_SKIP() << "a device without parts";
+
     EXPECT_EQ(Device::open("", 1).summary().compute_units, 1u);
 }
 

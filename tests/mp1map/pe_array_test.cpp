@@ -117,6 +117,7 @@ TEST(PeArray, ThereIsAtLeastOneArrayToDealPatchesTo) {
 
     EXPECT_EQ(fit_pe_array(cpu(), request).array_count, 1u);
     EXPECT_GT(fit_pe_array(cpu(), {}).array_count, 1u);
+    EXPECT_GT(fit_pe_array(gpu(), {}).array_count, 1u);
 }
 
 TEST(PeArray, LanesThatNoKernelHasAreRefused) {

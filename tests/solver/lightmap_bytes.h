@@ -19,6 +19,17 @@ struct Machine {
     std::uint32_t compute_units = 0;
 };
 
+/// A GPU has no part of fewer units, and less local memory than some tiles need.
+inline bool has(const mp1map::DeviceSummary& device, const Machine& machine) {
+    if (machine.compute_units != 0 && !device.is_divisible) return false;
+    try {
+        mp1map::fit_pe_array(device, machine.pe_array);
+        return true;
+    } catch (const mp1map::NoSuchDevice&) {
+        return false;
+    }
+}
+
 inline std::string exr_of(const Mesh& mesh, SolverSettings how, const Machine& machine) {
     how.pe_array = machine.pe_array;
     const auto device = mp1map::Device::open("", machine.compute_units);
@@ -38,7 +49,9 @@ inline std::string exr_of(const Mesh& mesh, SolverSettings how, const Machine& m
 inline void expect_same_bytes(const Mesh& mesh, const SolverSettings& how,
                               const std::vector<Machine>& machines) {
     std::string first;
+    const auto device = mp1map::Device::open("").summary();
     for (const auto& machine : machines) {
+        if (!has(device, machine)) continue;
         const auto bytes = exr_of(mesh, how, machine);
         ASSERT_FALSE(bytes.empty());
         if (first.empty()) first = bytes;

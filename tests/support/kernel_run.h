@@ -58,6 +58,12 @@ class KernelRun {
     mp1map::Plural<T> plural(const std::vector<T>& values) {
         return acu_.plural(values);
     }
+    /// As many work-items in groups that the device takes of this kernel: a GPU's share registers.
+    mp1map::Grid fitting(mp1map::Grid grid) const {
+        for (; grid.local > kernel_.most_work_items && grid.local % 2 == 0; grid.local /= 2)
+            grid.groups *= 2;
+        return grid;
+    }
     template <class... Args>
     void issue(mp1map::Grid grid, const Args&... args) {
         acu_.issue(kernel_, grid, args...);
