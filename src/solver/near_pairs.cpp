@@ -84,17 +84,19 @@ class Cells {
     /// Calls with every patch that a hemisphere at the shooter's centre may be wrong about.
     template <class Visit>
     void visit_near(const PatchShape& shooter, const Visit& visit) const {
-        const auto consider = [&](std::size_t receiver) {
-            const double wrong = error_of_centre(shooter, patches_[receiver]);
-            if (wrong > error_) visit(receiver, wrong);
-        };
-        std::ranges::for_each(large_, consider);
-        const glm::dvec3 far(reach(shooter, error_) + largest_kept_);
-        const Cell first = cell_of(shooter.centre - far);
-        const Cell last = cell_of(shooter.centre + far);
-        for_each_cell(first, last, [&](const std::vector<std::size_t>& cell) {
-            std::ranges::for_each(cell, consider);
+        for_each_group(shooter, [&](const std::vector<std::size_t>& receivers) {
+            for (const std::size_t receiver : receivers) {
+                const double wrong = error_of_centre(shooter, patches_[receiver]);
+                if (wrong > error_) visit(receiver, wrong);
+            }
         });
+    }
+
+    /// How many patches that takes a look at.
+    std::size_t candidate_count(const PatchShape& shooter) const {
+        std::size_t count = 0;
+        for_each_group(shooter, [&](const auto& receivers) { count += receivers.size(); });
+        return count;
     }
 
   private:
@@ -111,6 +113,12 @@ class Cells {
         const glm::dvec3 cell = glm::floor(point / edge_);
         return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
                 static_cast<std::int64_t>(cell.z)};
+    }
+    template <class Visit>
+    void for_each_group(const PatchShape& shooter, const Visit& visit) const {
+        const glm::dvec3 far(reach(shooter, error_) + largest_kept_);
+        visit(large_);
+        for_each_cell(cell_of(shooter.centre - far), cell_of(shooter.centre + far), visit);
     }
     template <class Visit>
     void for_each_cell(const Cell& first, const Cell& last, const Visit& visit) const {
@@ -257,12 +265,15 @@ NearPairs near_pairs(const Mesh& mesh, double error) {
 }
 
 std::uint64_t estimated_near_finds(const Mesh& mesh, double error) {
-    constexpr std::size_t kLooks = 1000;
+    constexpr std::size_t kLooks = 1000, kCandidates = 4'000'000;  // of looks: a second or two
     const auto patches = patch_shapes(mesh);
     const auto shooters = mesh.shooters.empty() ? patches : shooter_shapes(mesh);
     const Cells cells(patches, error);
-    std::uint64_t found = 0, looks = 0;
-    const std::size_t step = shooters.size() / kLooks + 1;
+    std::uint64_t found = 0, looks = 0, candidates = 0;
+    std::size_t step = shooters.size() / kLooks + 1;
+    for (std::size_t i = 0; i < shooters.size(); i += step)
+        candidates += cells.candidate_count(shooters[i]);
+    step *= candidates / kCandidates + 1;
     for (std::size_t i = 0; i < shooters.size(); i += step, ++looks)
         cells.visit_near(shooters[i], [&](std::size_t, double) { ++found; });
     return looks == 0 ? 0 : found * shooters.size() / looks;
