@@ -57,16 +57,53 @@ bool on_one_line(const glm::dvec3& a, const glm::dvec3& b, double precision) {
     return glm::length(glm::cross(a, b)) <= precision * longer;
 }
 
+/// An edge from a vertex where it may meet thousands of others.
+struct Spoke {
+    std::uint32_t edge;
+    glm::dvec3 along;
+    double place = 0;  ///< of its direction, whichever way, on an axis
+    double play =
+        std::numeric_limits<double>::infinity();  ///< from there, of longer ones on its line
+};
+
+Spoke spoke_of(std::uint32_t edge, const glm::dvec3& along, double precision) {
+    const glm::dvec3 axis(0.48, 0.6, 0.64);  // unlike those that scenes are built along
+    Spoke spoke{edge, along};
+    const double length = glm::length(along);
+    if (!(length > precision)) return spoke;
+    spoke.place = std::abs(glm::dot(axis, along)) / length;
+    spoke.play = 2 * precision / length + 1e-12;  // a chord is below pi / 2 sines; and rounding
+    return spoke;
+}
+
+// Those that meet at a vertex: each with its neighbours on the axis, the shorter one with the
+// longer.
+void join_spokes(std::vector<Spoke>& spokes, double precision, DisjointSets& lines) {
+    std::ranges::sort(spokes, {}, &Spoke::place);
+    for (auto own = spokes.begin(); own != spokes.end(); ++own) {
+        const auto join = [&](const Spoke& other) {
+            if (on_one_line(own->along, other.along, precision)) lines.join(own->edge, other.edge);
+        };
+        for (auto at = own; at != spokes.begin() && own->place - at[-1].place <= own->play; --at)
+            join(at[-1]);
+        for (auto at = own + 1; at != spokes.end() && at->place - own->place <= own->play; ++at)
+            join(*at);
+    }
+}
+
 DisjointSets join_on_lines(std::span<const Edge> edges, std::span<const EdgeEnd> ends,
                            const Vertices& vertices, double precision) {
     DisjointSets lines(edges.size());
-    const auto along = [&](const EdgeEnd& end) {
-        return vertices[other_end(edges[end.edge], end.vertex)] - vertices[end.vertex];
-    };
-    for (std::size_t i = 0; i < ends.size(); ++i)
-        for (std::size_t j = i + 1; j < ends.size() && ends[j].vertex == ends[i].vertex; ++j)
-            if (on_one_line(along(ends[i]), along(ends[j]), precision))
-                lines.join(ends[i].edge, ends[j].edge);
+    std::vector<Spoke> spokes;
+    for (std::size_t begin = 0, end = 0; begin < ends.size(); begin = end) {
+        const std::uint32_t hub = ends[begin].vertex;
+        spokes.clear();
+        for (; end < ends.size() && ends[end].vertex == hub; ++end)
+            spokes.push_back(spoke_of(
+                ends[end].edge, vertices[other_end(edges[ends[end].edge], hub)] - vertices[hub],
+                precision));
+        join_spokes(spokes, precision, lines);
+    }
     return lines;
 }
 

@@ -134,6 +134,22 @@ TEST(Junctions, OfAHundredThousandLooseTrianglesTakeSeconds) {
     EXPECT_LT(test::seconds_since(start), 10);
 }
 
+TEST(Junctions, OfVanesRoundOneVertexTakeSeconds) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> any(-1, 1);
+    const auto somewhere = [&] { return glm::dvec3(any(random), any(random), any(random)); };
+    Scene scene = empty_scene();
+    for (int i = 0; i < 20000; ++i) {
+        const glm::dvec3 at = glm::normalize(somewhere());
+        add_face(scene, {{0, 0, 0}, at, at + 0.02 * somewhere()});
+    }
+    const auto start = std::clock();
+
+    mesh_of(scene, kUncut);
+
+    EXPECT_LT(test::seconds_since(start), 5);
+}
+
 TEST(Junctions, OfAPlankFloorTakeSeconds) {
     Scene scene = empty_scene();
     constexpr int kPlanks = 50000;
