@@ -102,8 +102,13 @@ void insert(Imf::Header& header, const Attribute& attribute) {
     }
 }
 
+bool fits_half(const std::vector<float>& values) {
+    return std::ranges::all_of(values, [](float value) { return half(value).isFinite(); });
+}
+
 Imf::PixelType imf_type(const Channel& channel, PixelType type) {
-    return type == PixelType::half && !channel.exact ? Imf::HALF : Imf::FLOAT;
+    const bool as_half = type == PixelType::half && !channel.exact && fits_half(*channel.values);
+    return as_half ? Imf::HALF : Imf::FLOAT;
 }
 
 Imf::Header header_of(const Lightmap& lightmap, const std::vector<Attribute>& attributes,
@@ -116,17 +121,6 @@ Imf::Header header_of(const Lightmap& lightmap, const std::vector<Attribute>& at
     for (const auto& [name, layer] : lightmap.layers)
         if (!layer.meaning.empty()) insert(header, {"layer." + name, layer.meaning});
     return header;
-}
-
-std::vector<half> halves(const std::string& file, const std::string& channel,
-                         const std::vector<float>& values) {
-    std::vector<half> rounded(values.begin(), values.end());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (rounded[i].isFinite()) continue;
-        throw OutputError(file + ": channel " + channel + ": " + std::to_string(values[i]) +
-                          " is beyond the range of half; write float");
-    }
-    return rounded;
 }
 
 /// OpenEXR reads from the slices of a file it writes, but takes them as char*.
@@ -142,7 +136,7 @@ struct Frame {
     std::vector<std::vector<half>> half_channels;
 };
 
-Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type) {
+Frame frame_of(const Lightmap& lightmap, PixelType type) {
     Frame frame;
     for (const Channel& channel : channels_of(lightmap)) {
         if (imf_type(channel, type) == Imf::FLOAT) {
@@ -150,7 +144,7 @@ Frame frame_of(const std::string& file, const Lightmap& lightmap, PixelType type
                                 slice_of(*channel.values, lightmap.width, Imf::FLOAT));
             continue;
         }
-        frame.half_channels.push_back(halves(file, channel.name, *channel.values));
+        frame.half_channels.emplace_back(channel.values->begin(), channel.values->end());
         frame.buffer.insert(channel.name,
                             slice_of(frame.half_channels.back(), lightmap.width, Imf::HALF));
     }
@@ -195,7 +189,7 @@ void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
                const std::vector<Attribute>& attributes, PixelType type) {
     require_channel_names(lightmap);
     const Imf::Header header = header_of(lightmap, attributes, type);
-    const Frame frame = frame_of(path.string(), lightmap, type);
+    const Frame frame = frame_of(lightmap, type);
     write_atomically(path, [&](std::ostream& stream) {
         ExrStream exr_stream(stream, path.string());
         Imf::OutputFile file(exr_stream, header, kExrThreads);

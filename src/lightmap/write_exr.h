@@ -26,8 +26,8 @@ void require_channel_names(const Lightmap& lightmap);
 
 /// Scanline OpenEXR, ZIP: a channel a band plus `coverage`, LAYER.COMPONENT for layers, no alpha.
 /// What a layer means stands in the attribute `hemirad.layer.NAME`. The same arguments give the
-/// same bytes. Throws OutputError, also where a value is beyond the range of half, and InputError
-/// as require_channel_names().
+/// same bytes. A channel with a value beyond the range of half is one of floats. Throws
+/// OutputError, and InputError as require_channel_names().
 void write_exr(const std::filesystem::path& path, const Lightmap& lightmap,
                const std::vector<Attribute>& attributes, PixelType type = PixelType::float32);
 
