@@ -235,6 +235,13 @@ void require_same_solve(const fs::path& file, const Checkpoint& checkpoint,
                          ", more than --max-shots " + std::to_string(max_shots));
 }
 
+std::uint64_t shots_of_same_solve(const fs::path& file, const SolveIdentity& solve) try {
+    const auto checkpoint = read_checkpoint(file);
+    return difference(checkpoint.made_with, solve) ? 0 : checkpoint.state.shots;
+} catch (const InputError&) {
+    return 0;
+}
+
 std::optional<std::string> doubt(const fs::path& file, const Checkpoint& checkpoint,
                                  const SolveIdentity& solve) {
     const auto& made = checkpoint.made_with;

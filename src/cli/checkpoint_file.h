@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,6 +32,9 @@ void require_no_other_file(const std::filesystem::path& file);
 /// state: the identities are the same, and the tolerance and shots are not behind it.
 void require_same_solve(const std::filesystem::path& file, const Checkpoint& checkpoint,
                         const SolveIdentity& solve, double tolerance, std::uint64_t max_shots);
+
+/// How many shots a checkpoint of the very same solve is from its beginning; 0 where there is none.
+std::uint64_t shots_of_same_solve(const std::filesystem::path& file, const SolveIdentity& solve);
 
 /// What has to be said where it comes from another device.
 std::optional<std::string> doubt(const std::filesystem::path& file, const Checkpoint& checkpoint,

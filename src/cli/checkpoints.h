@@ -11,7 +11,8 @@
 namespace hemirad {
 
 /// What --checkpoint asks for. A checkpoint that cannot be written ends no solve: it is tried again
-/// when the next is due, and at the end.
+/// when the next is due, and at the end. One of the same solve that is farther is not
+/// replaced, and none by that of a solve without a shot.
 class Checkpoints {
   public:
     Checkpoints(const SolveOptions& options, SolveIdentity solve);
@@ -22,10 +23,14 @@ class Checkpoints {
     /// Of the solve's end; says why it could not be.
     std::optional<std::string> write(ProgressiveSolver& solver);
 
+    /// What of an earlier solve lies there, for who did not ask to go on from it.
+    std::optional<std::string> warning() const;
+
   private:
     std::optional<std::filesystem::path> file_;
     double tolerance_;
     SolveIdentity solve_;
+    std::uint64_t shots_there_ = 0;  ///< of this very solve: a state that it will come to
     Snapshots moments_;
     bool has_warned_ = false;
 };

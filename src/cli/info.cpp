@@ -200,7 +200,8 @@ void print_cost(std::ostream& out, const Mesh& mesh, const ChartLayout& layout,
     }
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     const auto limit = options.memory_limit.value_or(available_memory());
-    const auto memory = estimate_memory(mesh, layout, options, device.summary());
+    const auto memory =
+        estimate_memory(mesh, layout, options, device.summary(), peak_memory_bytes());
     out << "device       " << printable(device.summary().name) << ", "
         << bytes_text(device.summary().global_memory) << '\n'
         << "memory       " << memory_text(memory) << (options.memory_limit ? "; limit " : "; free ")

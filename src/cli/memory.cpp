@@ -288,12 +288,6 @@ MemoryParts while_solving_and_writing(const Mesh& mesh, const ChartLayout& layou
     return parts;
 }
 
-/// What reading and meshing have taken.
-MemoryParts so_far() {
-    return {{"reading the scene and making its mesh", peak_memory_bytes(),
-             "raise --patch-size, or make the scene or its textures smaller"}};
-}
-
 std::uint64_t resident_bytes() {
     std::ifstream in("/proc/self/statm");
     std::uint64_t size = 0, resident = 0;
@@ -353,9 +347,11 @@ std::uint64_t total(const MemoryParts& parts) {
 }
 
 MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
-                               const SolveOptions& options, const mp1map::DeviceSummary& device) {
+                               const SolveOptions& options, const mp1map::DeviceSummary& device,
+                               std::uint64_t prepare_bytes) {
     MemoryEstimate estimate;
-    const MemoryParts read = so_far();  // before more is taken to estimate the rest
+    const MemoryParts read = {{"reading the scene and making its mesh", prepare_bytes,
+                               "raise --patch-size, or make the scene or its textures smaller"}};
     const MemoryParts solving = on_device(mesh, options, device);
     estimate.device_bytes = total(solving);
     if (options.gather)

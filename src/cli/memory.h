@@ -36,9 +36,11 @@ struct MemoryEstimate {
 /// One line: "about " the sum, then the parts.
 std::string memory_text(const MemoryEstimate& estimate);
 
-/// Of a solve that shoots until it has converged, or for max_shots.
+/// Of a solve that shoots until it has converged, or for max_shots; reading and meshing have taken
+/// `prepare_bytes`.
 MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
-                               const SolveOptions& options, const mp1map::DeviceSummary& device);
+                               const SolveOptions& options, const mp1map::DeviceSummary& device,
+                               std::uint64_t prepare_bytes);
 
 /// Of this process so far, host and, where that is a CPU, device.
 std::uint64_t peak_memory_bytes();

@@ -44,6 +44,7 @@ struct Work {
     std::optional<Checkpoint> checkpoint;  ///< of --resume
     Mesh mesh;
     ChartLayout layout;
+    std::uint64_t prepare_bytes = 0;  ///< at the peak of all that
     MemoryEstimate memory = {};
 };
 
@@ -119,9 +120,11 @@ void require_few_bands(const Work& work, const SolveOptions& options,
         (parts.lights == Lights::together ? "" : with_fewer_lights(work.mesh, parts.lights)));
 }
 
-void check_memory(Work& work, const SolveOptions& options, const mp1map::DeviceSummary& device) {
-    work.memory = estimate_memory(work.mesh, work.layout, options, device);
-    require_memory(work.scene.file, work.memory, options, device);
+MemoryEstimate checked_memory(const Work& work, const SolveOptions& options,
+                              const mp1map::DeviceSummary& device) {
+    auto memory = estimate_memory(work.mesh, work.layout, options, device, work.prepare_bytes);
+    require_memory(work.scene.file, memory, options, device);
+    return memory;
 }
 
 /// Where the options ask for none, nothing.
@@ -183,7 +186,10 @@ std::optional<Forecast> foretold(ProgressiveSolver& solver, const SolveOptions& 
                                  const Interrupts& interrupts) {
     constexpr double kShort = 40;  // s; by looks one at a time, which take three times as long
     if (options.resume || (options.quiet && !options.report)) return {};
-    const auto forecast = solver.forecast(kShort, [&] { return !interrupts.requested(); });
+    const Stopwatch foretelling;
+    const auto forecast = solver.forecast(kShort, [&] {
+        return !interrupts.requested() && foretelling.seconds() < options.solver.time_limit;
+    });
     if (forecast && !options.quiet) std::cerr << "time " << time_text(*forecast) << '\n';
     return forecast;
 }
@@ -191,6 +197,8 @@ std::optional<Forecast> foretold(ProgressiveSolver& solver, const SolveOptions& 
 Outcome solve_once(const Work& work, const SolveOptions& options, const mp1map::Device& device,
                    const Interrupts& interrupts) {
     Checkpoints checkpoints(options, checked_identity(work, options, device.summary()));
+    if (const auto warning = checkpoints.warning(); warning && !options.quiet)
+        print_warnings(std::cerr, {*warning});
     ProgressiveSolver solver(work.mesh, options.solver, device);
     if (!options.quiet) {
         print_plan(std::cerr, options, work.mesh, device.summary(), solver.pe_array());
@@ -251,12 +259,33 @@ SolveOptions without_interim_files(SolveOptions options) {
     return options;
 }
 
+void write_results(const Work& work, const SolveOptions& options, Outcome& outcome);
+
+/// What `outcome` was solved with, for who reads of it.
+void take_accuracy(const Outcome& outcome, SolverSettings& settings) {
+    settings.resolution = outcome.accuracy.resolution;
+    settings.shooter_samples = outcome.accuracy.shooter_samples;
+    settings.sampling_error = outcome.accuracy.sampling_error;
+}
+
+/// What `call` returns; where it fails, what a solve gave before is written: it took longer.
+template <class Call>
+auto or_saved(const Work& work, SolveOptions options, Outcome& outcome, const Call& call) try {
+    return call();
+} catch (const std::exception&) {
+    take_accuracy(outcome, options.solver);
+    write_results(work, options, outcome);
+    throw;
+}
+
 /// An error is known only of solutions that both came to their end.
 Outcome solve_and_estimate(const Solving& solving, const SolveOptions& options) {
     auto outcome = solve_with(solving, options, options.solver);
     if (!options.estimate_error || outcome.stop != Stop::converged) return outcome;
     const auto plain = without_interim_files(options);
-    const auto other = solve_with(solving, plain, for_comparison(plain.solver));
+    const auto other = or_saved(solving.work, options, outcome, [&] {
+        return solve_with(solving, plain, for_comparison(plain.solver));
+    });
     if (other.stop == Stop::converged) note_error(solving.work, other, outcome);
     return outcome;
 }
@@ -271,6 +300,9 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
         solver.tolerance = tolerance;
         solver.shooter_samples = accuracy_at(step).shooter_samples;
         set_accuracy(solver, accuracy_at(step));
+        SolveOptions own = plain;
+        own.solver = solver;
+        checked_memory(solving.work, own, solving.device.summary());
         auto outcome = solve_with(solving, plain, solver);
         // Of lights that shine out of the scene, what is left is more of what arrives.
         const double missing = missing_light(outcome.solution);
@@ -281,7 +313,7 @@ Outcome solve_to_target(const Solving& solving, const SolveOptions& options) {
     unsigned step = first_step(*options.target_error);
     auto coarser = solve_at(step - 1);
     while (coarser.stop == Stop::converged) {
-        auto outcome = solve_at(step);
+        auto outcome = or_saved(solving.work, plain, coarser, [&] { return solve_at(step); });
         if (outcome.stop != Stop::converged) {
             coarser.stop = outcome.stop;
             break;
@@ -321,7 +353,7 @@ bool split_where_light_varies(Work& work, const Solving& solving, const SolveOpt
             finer.shooter_count() == work.mesh.shooter_count())
             return true;
         work.mesh = std::move(finer);
-        check_memory(work, options, solving.device.summary());
+        work.memory = checked_memory(work, options, solving.device.summary());
     }
     return true;
 }
@@ -337,18 +369,33 @@ std::vector<LightmapFile> files_of(const Work& work, const SolveOptions& options
     return files;
 }
 
+/// Throws what the first that cannot be written throws, once all were tried.
 void write_results(const Work& work, const SolveOptions& options, Outcome& outcome) {
+    std::exception_ptr fault;
+    const auto attempt = [&](const auto& write) {
+        try {
+            write();
+        } catch (const std::exception&) {
+            if (!fault) fault = std::current_exception();
+        }
+    };
     const bool layer = options.estimate_error && outcome.error;
     const auto* const gathered = outcome.gathered ? &*outcome.gathered : nullptr;
-    const auto covered = write_picture(options, work.mesh, work.layout, outcome.solution,
-                                       layer ? &outcome.error->by_patch : nullptr, gathered);
-    outcome.lightmaps = files_of(work, options, covered);
-    write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout, outcome.solution,
-                       gathered);
-    if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
+    attempt([&] {
+        const auto covered = write_picture(options, work.mesh, work.layout, outcome.solution,
+                                           layer ? &outcome.error->by_patch : nullptr, gathered);
+        outcome.lightmaps = files_of(work, options, covered);
+    });
+    attempt([&] {
+        write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout,
+                           outcome.solution, gathered);
+    });
+    attempt([&] {
+        if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
+    });
+    if (fault) std::rethrow_exception(fault);
 }
 
-/// Where it fails, the lightmap of the patches is written: the solve was the longer part.
 std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,
                                                    const SolveOptions& options, Outcome& outcome) {
     const Work& work = solving.work;
@@ -357,13 +404,10 @@ std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,
                solving.stopwatch.seconds() < options.solver.time_limit;
     };
     if (!go_on()) return {};
-    try {
+    return or_saved(work, options, outcome, [&] {
         return gather_lightmaps(options, work.mesh, work.layout, outcome.solution, solving.device,
                                 go_on);
-    } catch (const std::exception&) {
-        write_results(work, options, outcome);
-        throw;
-    }
+    });
 }
 
 void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
@@ -372,6 +416,12 @@ void warn_of_missed_target(const SolveOptions& options, Outcome& outcome) {
         return;
     outcome.warnings.push_back("--target-error " + number_text(*options.target_error) +
                                (outcome.error ? ": not reached" : ": stopped before it was known"));
+    print_warnings(std::cerr, {outcome.warnings.back()});
+}
+
+void warn_of_missing_error(const SolveOptions& options, Outcome& outcome) {
+    if (!options.estimate_error || options.target_error || outcome.error) return;
+    outcome.warnings.push_back("--estimate-error: stopped before it was known");
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
@@ -411,21 +461,22 @@ void warn_of_missing_light(const SolveOptions& options, Outcome& outcome) {
     print_warnings(std::cerr, {outcome.warnings.back()});
 }
 
-/// What is there from earlier is better than what a mesh without its splits would give.
-int stopped_before_resuming(const SolveOptions& options, const Interrupts& interrupts) {
+/// Exit code. What is there from earlier is better than what could be written.
+int leave_files(const SolveOptions& options, const Interrupts& interrupts, const char* before) {
     const auto fault =
-        options.resume->string() + ": stopped before --split was done; nothing is written";
+        options.output.string() + ": stopped before " + before + "; nothing is written";
     if (!interrupts.requested()) throw InputError(fault);
     std::cerr << printable(fault) << '\n';
     return kInterrupted;
 }
 
-/// A solve that is not stopped has another mesh.
-void give_up_checkpoint(SolveOptions& options) {
-    if (!options.checkpoint) return;
-    print_warnings(std::cerr, {options.checkpoint->string() +
-                               ": not written: stopped before --split was done"});
-    options.checkpoint.reset();
+bool would_replace_by_nothing(const SolveOptions& options, const Outcome& outcome) {
+    const bool stopped = outcome.stop == Stop::interrupted || outcome.stop == Stop::time_limit;
+    std::error_code ignored;
+    return stopped && outcome.solution.shots == 0 &&
+           std::ranges::any_of(output_files(options), [&](const auto& file) {
+               return std::filesystem::exists(file, ignored);
+           });
 }
 
 int solve(SolveOptions options) {
@@ -438,25 +489,25 @@ int solve(SolveOptions options) {
     const double preparing = total.seconds();
     const auto device = mp1map::Device::open(options.device, options.compute_units);
     require_few_bands(work, options, device.summary());
-    check_memory(work, options, device.summary());
+    work.prepare_bytes = peak_memory_bytes();
+    work.memory = checked_memory(work, options, device.summary());
 
     const Interrupts interrupts;
     const Solving solving{work, device, interrupts};
-    if (!split_where_light_varies(work, solving, options)) {
-        if (options.resume) return stopped_before_resuming(options, interrupts);
-        give_up_checkpoint(options);
-    }
+    if (!split_where_light_varies(work, solving, options))
+        return leave_files(options, interrupts, "--split was done");
     auto outcome = options.target_error ? solve_to_target(solving, options)
                                         : solve_and_estimate(solving, options);
-    options.solver.resolution = outcome.accuracy.resolution;
-    options.solver.shooter_samples = outcome.accuracy.shooter_samples;
-    options.solver.sampling_error = outcome.accuracy.sampling_error;
+    if (would_replace_by_nothing(options, outcome))
+        return leave_files(options, interrupts, "the first shot");
+    take_accuracy(outcome, options.solver);
     outcome.memory = work.memory;
     outcome.seconds.prepare = preparing;
     auto doubts = warnings_of(work.scene, work.mesh);
     doubts.insert(doubts.end(), work.layout.moved.begin(), work.layout.moved.end());
     outcome.warnings.insert(outcome.warnings.begin(), doubts.begin(), doubts.end());
     warn_of_missed_target(options, outcome);
+    warn_of_missing_error(options, outcome);
     warn_of_faint_light(options, outcome);
     warn_of_missing_light(options, outcome);
     gather(solving, options, outcome);

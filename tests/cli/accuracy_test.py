@@ -72,6 +72,13 @@ class Accuracy(CommandLine):
         self.assertIn(b"error.G", self.channels())
         self.assertIn("error about", self.words)
 
+    def test_an_estimate_that_was_stopped_is_told(self):
+        report = self.solved("--quality", "draft", "--max-shots", "3", "--estimate-error")
+
+        self.assertIsNone(report["error"])
+        self.assertIn("--estimate-error: stopped before it was known", report["warnings"])
+        self.assertIn("warning: --estimate-error: stopped", self.words)
+
     def test_no_estimate_where_none_is_asked_for(self):
         self.assertIsNone(self.solved("--quality", "draft", "--max-shots", "3")["error"])
         self.assertNotIn(b"error.G", self.channels())

@@ -79,9 +79,28 @@ class Resume(Checkpoints):
         self.write("scene.obj", scenes.obj(faces=scenes.FACES + "usemtl white\nf 1 2 6 5\n"))
         result = self.solve("--split", "2", "--backfaces", "cull", "--checkpoint", "c.ckpt",
                             "--time-limit", "0.03")
-        self.assert_done(result)
-        self.assertIn("c.ckpt: not written: stopped before --split was done", result.stderr)
+        self.assertEqual(1, result.returncode, result.stderr)
+        self.assertIn("scene.exr: stopped before --split was done; nothing is written",
+                      result.stderr)
         self.assertFalse((self.folder / "c.ckpt").exists())
+
+    def test_of_the_same_solve_is_not_replaced_by_one_with_fewer_shots(self):
+        self.stop_early()
+        left = self.bytes_of("c.ckpt")
+        result = self.solve("--max-shots", "2", "--checkpoint", "c.ckpt")
+        self.assert_done(result)
+        self.assertIn("c.ckpt: holds this solve after 5 shots, and stays", result.stderr)
+        self.assertEqual(left, self.bytes_of("c.ckpt"))
+        self.assert_done(self.solve("--max-shots", "6", "--checkpoint", "c.ckpt"))
+        self.assertNotEqual(left, self.bytes_of("c.ckpt"))
+
+    def test_and_pictures_are_not_replaced_where_no_shot_was_made(self):
+        self.stop_early()
+        before = (self.bytes_of("scene.exr"), self.bytes_of("c.ckpt"))
+        result = self.solve("--time-limit", "1e-9", "--checkpoint", "c.ckpt", "--weld", "0.001")
+        self.assertEqual(1, result.returncode, result.stderr)
+        self.assertIn("scene.exr: stopped before the first shot; nothing is written", result.stderr)
+        self.assertEqual(before, (self.bytes_of("scene.exr"), self.bytes_of("c.ckpt")))
 
     def test_counts_what_was_done_again_as_one(self):
         self.stop_early()

@@ -302,9 +302,10 @@ class BadOutputs(CommandLine):
 
     def test_light_beyond_what_a_float_holds(self):
         self.write("scene.mtl", scenes.MATERIALS.replace("Ke", "Ke 1e200 1e200 1e200 #"))
-        result = self.solve("-o", "a.exr")
+        result = self.solve("-o", "a.exr", "--faces", "a.csv")
         self.assert_refused_after_start(result, "a.exr: values are beyond the range of float")
         self.assertFalse((self.folder / "a.exr").exists())
+        self.assertIn("e+200", (self.folder / "a.csv").read_text())
 
     def test_names_with_an_unfitting_ending(self):
         self.assert_refused(self.solve("-o", "a.png"), 'hemirad: --output "a.png": ')

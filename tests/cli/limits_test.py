@@ -1,10 +1,12 @@
 """Memory and time told before the work, refusals, and what large work takes; see Load for the long
 ones. Not for doubtful numbers: a quarter of what happens is the promise."""
 import json
+import os
 import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -59,6 +61,13 @@ class Memory(LimitsTest):
         self.report_of("cornell.gltf", *options)  # its kernels, for fewer texels
         for error in "0.02", "0":
             self.assert_near("cornell.gltf", *options, "--texel-size", "0.0025", "--gather-error", error)
+
+    def test_a_compiler_that_was_needed_for_splits_is_not_counted_twice(self):
+        with tempfile.TemporaryDirectory() as cache:
+            self.assert_done(self.run_hemirad(
+                "solve", SCENES / "cornell.gltf", "-o", "a.exr", "--quality", "draft", "--split",
+                "1", "--max-shots", "5", "--memory-limit", "350M",
+                env=os.environ | {"POCL_CACHE_DIR": cache}))
 
     def test_info_and_report_tell_the_same(self):
         options = ("--quality", "draft", "--row-memory", "1", "--layers", "shots")

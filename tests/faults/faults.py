@@ -275,12 +275,17 @@ class Each:
         self.check_name(done, name)
         if code == 0:
             self.check_newer(self.whole)
-        elif call.target == name == "c.ckpt":  # the last one, which leaves the others to be written
-            self.check_newer(set(self.whole) - {name})
+        elif code == 3 and call.target == name:  # which leaves the others to be written
+            self.check_newer(set(self.whole) - self.left_with(name))
         else:
             self.check_older(call.written)
         if call.target == name and code == 3 and self.holds(self.whole, name):
             raise Wrong(f"{name} was written all the same")
+
+    def left_with(self, name):
+        """Pictures and previews of all atlases are one output; a report tells of all."""
+        pictures = {other for other in self.whole if other.endswith((".exr", ".png"))}
+        return {name, "r.json"} | (pictures if name in pictures else set())
 
     def fate_of(self, call, error, stays):
         """The exit code, and which file is told of: ANY, or none."""
@@ -289,15 +294,20 @@ class Each:
                        if other.function == call.function)
             return (3, ANY) if more else (0, "")
         if call.function in READING and not is_temporary(call.what):
-            return self.fate_of_reading(pathlib.Path(call.what).name)
+            return self.fate_of_reading(call)
         if call.function == "open" and is_temporary(call.what) and not call.target:
             return (0, "") if call.is_found else (3, ANY)  # before the work begins
         if not call.target or error in (errno.EINTR, "short") or call.function in HARMLESS:
             return 0, ""
         return 3 if call.is_final else 0, call.target
 
-    def fate_of_reading(self, name):
-        if name in INPUTS or name == "c.ckpt":  # which is asked whether it is one
+    def fate_of_reading(self, call):
+        name = pathlib.Path(call.what).name
+        if name == "c.ckpt":  # which is asked whether it is one, then what is in it
+            asks = next(other for other in self.calls if (other.function, other.what) ==
+                        (call.function, call.what)) is call
+            return (1, name) if asks else (0, "")
+        if name in INPUTS:
             return 1, name
         return (3, name) if name in self.whole else (0, "")
 

@@ -69,6 +69,15 @@ class Injected(Faults):
         before = faults.files(self.folder)
         self.assert_harmless(faults.EVERYTHING, before, "write", "write:1+", {3}, error="short")
 
+    def test_what_was_solved_is_written_where_a_second_solution_fails(self):
+        solve = ("solve", "scene.obj", "--quiet", "--patch-size", "0.25", "-o", "a.exr")
+        for second in (("--resolution", "64", "--estimate-error"), ("--target-error", "0.05")):
+            with self.subTest(second):
+                faults.put(self.folder, {})
+                done = faults.run((*solve, *second), self.folder, "clBuildProgram:2+", -6)
+                self.assertEqual((2, 1), (done.code, done.stderr.count("\n")), done.stderr)
+                self.assertTrue((self.folder / "a.exr").exists())
+
     def test_interrupted_calls_are_repeated(self):
         self.run_whole(faults.QUICK)
         before = faults.files(self.folder)
@@ -87,7 +96,7 @@ class Injected(Faults):
             error = faults.ERRORS[function][index // 5]
             with self.subTest(target, function=function, error=error):
                 each.check_file(last[target, function], error)
-        reads = {pathlib.Path(call.what).name: call for call in each.calls
+        reads = {pathlib.Path(call.what).name: call for call in reversed(each.calls)
                  if call.function == "read"}
         for name in ("scene.obj", "scene.mtl", "a.exr", "c.ckpt"):
             with self.subTest("read", name=name):
