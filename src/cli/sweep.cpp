@@ -10,6 +10,7 @@
 
 #include "cli/exit_codes.h"
 #include "cli/interrupts.h"
+#include "cli/memory.h"
 #include "cli/option_values.h"
 #include "cli/outputs.h"
 #include "cli/solve_options.h"
@@ -86,6 +87,7 @@ std::vector<Swept> read_scenes(const SweepOptions& options) {
         check_distinct(file, {options.output});
         keep_side_files(scene, {options.output});
         const double patch_size = patch_size_of(options, scene, file);
+        require_memory_for_mesh(scene, {.patch_size = patch_size}, {}, options.device);
         const auto mesh = build_mesh(scene, {.patch_size = patch_size});
         result.push_back({file.stem().string(), patch_size, SweepScene(patch_arrays(mesh), shots)});
     }

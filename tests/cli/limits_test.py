@@ -114,6 +114,17 @@ class Memory(LimitsTest):
         self.assertIn("raise --element-size", self.refused("--element-size", "0.0005",
                                                            "--memory-limit", "1G"))
 
+    def test_a_mesh_larger_than_what_is_free_is_refused_before_it_is_made(self):
+        """Some 40 GiB."""
+        free = pathlib.Path("/proc/meminfo").read_text(encoding="ascii")
+        if int(re.search(r"MemAvailable: +(\d+) kB", free).group(1)) > 32 * MIB:
+            self.skipTest("there is room for it")
+        for command in ("sweep", "formfactors"):
+            result = self.run_hemirad(command, SCENES / "cornell.gltf", "-o", "a.csv",
+                                      "--patch-size", "0.00014", timeout=10)
+            self.assertEqual(1, result.returncode)
+            self.assertRegex(result.stderr, r"^cornell\.gltf: needs about .* are free; ")
+
     def test_info_reckons_with_all_that_takes_memory(self):
         options = ("--texel-size", "0.002", "--row-memory", "0", "--memory-limit", "50M")
         told = []
