@@ -1,13 +1,18 @@
 #include "lightmap/cell_values.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace hemirad {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Cells a side of a block, where the grid has as many.
+constexpr std::uint32_t kBlockBits = 3;
 
 /// A weighted mean that is exact where all values are equal, because it sums differences.
 class WeightedMean {
@@ -40,39 +45,52 @@ std::uint32_t largest_scale(const Surface& surface) {
     return surface.scale_of_patch.empty() ? 0 : *std::ranges::max_element(surface.scale_of_patch);
 }
 
-}  // namespace
-
-CellValues::CellValues(const Surface& surface, std::span<const double> areas,
-                       std::span<const double> values, std::uint32_t side) {
-    for (std::uint32_t scale = 0; scale <= largest_scale(surface); ++scale) {
-        const std::uint32_t columns = surface.columns >> scale, rows = surface.rows >> scale;
-        std::vector<WeightedMean> means(std::size_t{columns} * rows);
-        Grid grid{columns, rows, {}, std::vector<bool>(means.size())};
-        for (std::uint32_t i = 0; i < surface.patch_count; ++i) {
-            if (surface.scale(i) > scale || surface.side(i) != side) continue;
-            const std::uint32_t cell = surface.cell_of_patch[i];
-            const std::size_t at = std::size_t{(cell / surface.columns) >> scale} * columns +
-                                   ((cell % surface.columns) >> scale);
-            means[at].add(areas[i], values[i]);
-            if (surface.scale(i) == scale) grid.covered[at] = true;
-        }
-        for (const WeightedMean& mean : means) grid.values.push_back(mean.value());
-        grids_.push_back(std::move(grid));
-    }
-    for (auto scale = static_cast<std::uint32_t>(grids_.size() - 1); scale-- > 0;) refine(scale);
+/// Of the scale: those that the patch covers, or the one that it lies in.
+void for_each_cell(const Surface& surface, std::uint32_t patch, std::uint32_t scale,
+                   const auto& visit) {
+    const std::uint32_t cell = surface.cell_of_patch[patch];
+    const std::uint32_t column = (cell % surface.columns) >> scale;
+    const std::uint32_t row = (cell / surface.columns) >> scale;
+    const std::uint32_t size = 1u << (std::max(surface.scale(patch), scale) - scale);
+    for (std::uint32_t y = 0; y < size; ++y)
+        for (std::uint32_t x = 0; x < size; ++x) visit(column + x, row + y);
 }
 
-void CellValues::refine(std::uint32_t scale) {
-    Grid& fine = grids_[scale];
-    const Grid& coarse = grids_[scale + 1];
-    for (std::uint32_t row = 0; row < fine.rows; ++row) {
-        for (std::uint32_t column = 0; column < fine.columns; ++column) {
-            if (!coarse.covered[std::size_t{row / 2} * coarse.columns + column / 2]) continue;
-            const std::size_t at = std::size_t{row} * fine.columns + column;
-            fine.values[at] = coarse.interpolate((glm::dvec2(column, row) + 0.5) / 2.0);
-            fine.covered[at] = true;
-        }
-    }
+std::uint32_t bits_of_block(std::uint32_t count) {
+    return std::min(kBlockBits, static_cast<std::uint32_t>(std::bit_width(count - 1)));
+}
+
+}  // namespace
+
+CellValues::Grid::Grid(std::uint32_t column_count, std::uint32_t row_count)
+    : columns(column_count),
+      rows(row_count),
+      column_bits_(bits_of_block(columns)),
+      row_bits_(bits_of_block(rows)),
+      blocks_(block_of(columns - 1, rows - 1) + 1, 0) {}
+
+std::size_t CellValues::Grid::block_of(std::uint32_t column, std::uint32_t row) const {
+    const std::uint32_t across = ((columns - 1) >> column_bits_) + 1;
+    return std::size_t{row >> row_bits_} * across + (column >> column_bits_);
+}
+
+void CellValues::Grid::hold(std::uint32_t column, std::uint32_t row) {
+    std::uint32_t& block = blocks_[block_of(column, row)];
+    if (block == 0) block = ++held_blocks_;
+}
+
+std::size_t CellValues::Grid::held_count() const {
+    return std::size_t{held_blocks_} << (column_bits_ + row_bits_);
+}
+
+std::size_t CellValues::Grid::index_of(std::uint32_t column, std::uint32_t row) const {
+    const std::size_t block = blocks_[block_of(column, row)] - 1;
+    const std::uint32_t x = column & ((1u << column_bits_) - 1), y = row & ((1u << row_bits_) - 1);
+    return (((block << row_bits_) + y) << column_bits_) + x;
+}
+
+double CellValues::Grid::value(std::uint32_t column, std::uint32_t row) const {
+    return blocks_[block_of(column, row)] == 0 ? kNone : values[index_of(column, row)];
 }
 
 double CellValues::Grid::interpolate(const glm::dvec2& position) const {
@@ -80,8 +98,8 @@ double CellValues::Grid::interpolate(const glm::dvec2& position) const {
     const Neighbours up = neighbours_of(position.y, rows);
     WeightedMean mean;
     const auto add = [&](std::uint32_t column, std::uint32_t row, double weight) {
-        const double value = values[std::size_t{row} * columns + column];
-        if (!std::isnan(value)) mean.add(weight, value);
+        const double here = value(column, row);
+        if (!std::isnan(here)) mean.add(weight, here);
     };
     const double u = across.high_weight, v = up.high_weight;
     add(across.low, up.low, (1.0 - u) * (1.0 - v));
@@ -91,22 +109,55 @@ double CellValues::Grid::interpolate(const glm::dvec2& position) const {
     return mean.value();
 }
 
+CellValues::CellValues(const Surface& surface, std::span<const double> areas,
+                       std::span<const double> values, std::span<const std::uint32_t> patches) {
+    for (std::uint32_t scale = 0; scale <= largest_scale(surface); ++scale) {
+        Grid grid(surface.columns >> scale, surface.rows >> scale);
+        for (const std::uint32_t i : patches)
+            for_each_cell(surface, i, scale, std::bind_front(&Grid::hold, &grid));
+        std::vector<WeightedMean> means(grid.held_count());
+        for (const std::uint32_t i : patches)
+            if (surface.scale(i) <= scale)
+                for_each_cell(surface, i, scale, [&](std::uint32_t column, std::uint32_t row) {
+                    means[grid.index_of(column, row)].add(areas[i], values[i]);
+                });
+        grid.values.reserve(means.size());
+        for (const WeightedMean& mean : means) grid.values.push_back(mean.value());
+        grids_.push_back(std::move(grid));
+    }
+    for (auto scale = static_cast<std::uint32_t>(grids_.size() - 1); scale-- > 0;)
+        refine(surface, patches, scale);
+}
+
+void CellValues::refine(const Surface& surface, std::span<const std::uint32_t> patches,
+                        std::uint32_t scale) {
+    Grid& fine = grids_[scale];
+    for (const std::uint32_t i : patches)
+        if (surface.scale(i) > scale)
+            for_each_cell(surface, i, scale, [&](std::uint32_t column, std::uint32_t row) {
+                fine.values[fine.index_of(column, row)] =
+                    grids_[scale + 1].interpolate((glm::dvec2(column, row) + 0.5) / 2.0);
+            });
+}
+
 double CellValues::at(const glm::dvec2& position, std::uint32_t fallback) const {
-    const double value = grids_[0].interpolate(position);
-    return std::isnan(value) ? grids_[0].values[fallback] : value;
+    const Grid& grid = grids_[0];
+    const double value = grid.interpolate(position);
+    return std::isnan(value) ? grid.value(fallback % grid.columns, fallback / grid.columns) : value;
 }
 
 double CellValues::at_scale(std::uint32_t scale, std::int64_t column, std::int64_t row) const {
     const Grid& grid = grids_[scale];
     if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return kNone;
-    return grid.values[static_cast<std::size_t>(row * grid.columns + column)];
+    return grid.value(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
 }
 
 std::vector<CellValues> cell_values_by_side(const Surface& surface, std::span<const double> areas,
                                             std::span<const double> values) {
+    std::vector<std::vector<std::uint32_t>> patches(surface.side_count());
+    for (std::uint32_t i = 0; i < surface.patch_count; ++i) patches[surface.side(i)].push_back(i);
     std::vector<CellValues> by_side;
-    for (std::uint32_t side = 0; side < surface.side_count(); ++side)
-        by_side.emplace_back(surface, areas, values, side);
+    for (const auto& of_side : patches) by_side.emplace_back(surface, areas, values, of_side);
     return by_side;
 }
 

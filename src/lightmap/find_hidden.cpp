@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <span>
 
+#include "scene/bounds.h"
 #include "scene/disjoint_sets.h"
 
 namespace hemirad {
@@ -19,6 +22,9 @@ constexpr std::size_t kMostLooks = 400'000'000;
 
 /// Corners of a patch lie on a line that a ray just passes.
 constexpr double kEdgeSlack = 1e-9;
+
+/// Of the largest coordinate: more than kEdgeSlack and rounding.
+constexpr double kRunSlack = 1e-8;
 
 struct Ray {
     glm::dvec3 from, along;  ///< unit
@@ -41,6 +47,49 @@ double distance_to(const Mesh& mesh, const Patch& patch, const glm::dvec3& norma
     return distance;
 }
 
+/// Patches that follow each other in the mesh, and where a ray may meet them.
+struct Run {
+    std::size_t first, end;
+    Bounds bounds;
+};
+
+/// In the plane in which distance_to() looks for it.
+void take_in(Bounds& bounds, const Mesh& mesh, const Patch& patch) {
+    const glm::dvec3& normal = mesh.surfaces[patch.surface].normal;
+    for (const std::uint32_t corner : patch.corners) {
+        const glm::dvec3& at = mesh.vertices[corner];
+        bounds.take_in(at + glm::dot(normal, mesh.vertices[patch.corners[0]] - at) * normal);
+    }
+}
+
+std::vector<Run> runs_of(const Mesh& mesh) {
+    constexpr std::size_t kPatches = 64;
+    std::vector<Run> runs;
+    Bounds all;
+    for (std::size_t first = 0; first < mesh.patches.size(); first += kPatches) {
+        Run run{first, std::min(first + kPatches, mesh.patches.size()), {}};
+        for (std::size_t i = run.first; i < run.end; ++i)
+            take_in(run.bounds, mesh, mesh.patches[i]);
+        all.take_in(run.bounds);
+        runs.push_back(run);
+    }
+    const glm::dvec3 reach = glm::max(glm::abs(all.least), glm::abs(all.most));
+    const double slack = kRunSlack * std::max({reach.x, reach.y, reach.z});
+    for (Run& run : runs) {
+        run.bounds.least -= slack;
+        run.bounds.most += slack;
+    }
+    return runs;
+}
+
+/// Slabs (Kay and Kajiya 1986).
+bool meets(const Ray& ray, const Bounds& bounds) {
+    const glm::dvec3 a = (bounds.least - ray.from) / ray.along;
+    const glm::dvec3 b = (bounds.most - ray.from) / ray.along;
+    const glm::dvec3 enter = glm::min(a, b), leave = glm::max(a, b);
+    return std::max({enter.x, enter.y, enter.z, 0.0}) <= std::min({leave.x, leave.y, leave.z});
+}
+
 struct Hit {
     double distance;
     std::uint32_t surface;
@@ -57,16 +106,12 @@ glm::dvec3 inner_point(const Mesh& mesh, const Patch& patch) {
 /// What a ray from a patch meets, in this order, not counting what lies on the patch.
 class Sight {
   public:
-    Sight(const Mesh& mesh, std::uint32_t index, const glm::dvec3& along)
+    Sight(const Mesh& mesh, std::span<const Run> runs, std::uint32_t index, const glm::dvec3& along)
         : mesh_(mesh),
           ray_{inner_point(mesh, mesh.patches[index]), along},
           least_(std::max(4 * mesh.weld, 1e-9 * std::sqrt(mesh.area(mesh.patches[index])))) {
-        for (const Patch& patch : mesh.patches) {
-            const double distance =
-                distance_to(mesh, patch, mesh.surfaces[patch.surface].normal, ray_);
-            if (distance > least_ && std::isfinite(distance))
-                hits_.push_back({distance, patch.surface});
-        }
+        for (const Run& run : runs)
+            if (meets(ray_, run.bounds)) look_at(run);
         std::ranges::sort(hits_, {}, &Hit::distance);
         const auto repeated = std::ranges::unique(hits_, {}, &Hit::surface);
         hits_.erase(repeated.begin(), repeated.end());
@@ -96,6 +141,15 @@ class Sight {
     }
 
   private:
+    void look_at(const Run& run) {
+        for (std::size_t i = run.first; i < run.end; ++i) {
+            const Patch& patch = mesh_.patches[i];
+            const double distance =
+                distance_to(mesh_, patch, mesh_.surfaces[patch.surface].normal, ray_);
+            if (distance > least_ && std::isfinite(distance))
+                hits_.push_back({distance, patch.surface});
+        }
+    }
     bool shows_front(const Hit& hit) const {
         return glm::dot(mesh_.surfaces[hit.surface].normal, ray_.along) < 0;
     }
@@ -111,22 +165,22 @@ class Sight {
 };
 
 /// Whatever else stands on that solid, or reaches into it.
-bool lies_in_a_solid(const Mesh& mesh, std::uint32_t index) {
+bool lies_in_a_solid(const Mesh& mesh, std::span<const Run> runs, std::uint32_t index) {
     // Along no axis, and ever steeper: what stands against a wall leaves the solid where the room
     // ends.
     constexpr std::array<glm::dvec2, 3> kSlopes = {{{2.31, 1.37}, {-1.73, 0.91}, {0.37, -0.53}}};
     const Surface& surface = mesh.surfaces[mesh.patches[index].surface];
     for (const glm::dvec2& slope : kSlopes) {
         const auto along = surface.normal + slope.x * surface.u_axis + slope.y * surface.v_axis;
-        if (const auto solids = Sight(mesh, index, glm::normalize(along)).solids())
+        if (const auto solids = Sight(mesh, runs, index, glm::normalize(along)).solids())
             return *solids > 0;
     }
     return false;
 }
 
-bool is_covered(const Mesh& mesh, std::uint32_t index) {
+bool is_covered(const Mesh& mesh, std::span<const Run> runs, std::uint32_t index) {
     const glm::dvec3& up = mesh.surfaces[mesh.patches[index].surface].normal;
-    return Sight(mesh, index, up).is_of_backs() || lies_in_a_solid(mesh, index);
+    return Sight(mesh, runs, index, up).is_of_backs() || lies_in_a_solid(mesh, runs, index);
 }
 
 /// Patches of one side that share edges, by their number in the surface.
@@ -155,7 +209,10 @@ class HiddenFinder {
 
     std::vector<bool> run() {
         for (const Surface& surface : mesh_.surfaces)
-            if (surface.has_chart && surface.side_count() > 1) look_at(surface);
+            if (surface.has_chart && surface.side_count() > 1) {
+                if (runs_.empty()) runs_ = runs_of(mesh_);
+                look_at(surface);
+            }
         return std::move(hidden_);
     }
 
@@ -168,12 +225,13 @@ class HiddenFinder {
                 });
             looks_ += 2 * mesh_.patches.size();
             if (looks_ > kMostLooks) return;
-            if (!is_covered(mesh_, surface.first_patch + largest)) continue;
+            if (!is_covered(mesh_, runs_, surface.first_patch + largest)) continue;
             for (const std::uint32_t i : members) hidden_[surface.first_patch + i] = true;
         }
     }
 
     const Mesh& mesh_;
+    std::vector<Run> runs_;
     std::vector<bool> hidden_;
     std::size_t looks_ = 0;
 };

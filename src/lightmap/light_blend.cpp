@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
+#include <span>
 
 namespace hemirad {
 namespace {
@@ -56,6 +57,26 @@ bool touch(const Box& a, const Box& b) {
            glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
+int longest_axis(const std::vector<Box>& boxes, std::span<const std::uint32_t> of) {
+    Box all;
+    for (const std::uint32_t i : of) {
+        all.low = glm::min(all.low, boxes[i].low);
+        all.high = glm::max(all.high, boxes[i].high);
+    }
+    const glm::dvec3 size = all.high - all.low;
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+/// Along the longest axis, each with those that begin before it ends.
+void for_each_touching(const std::vector<Box>& boxes, std::vector<std::uint32_t> of,
+                       const auto& visit) {
+    const int axis = longest_axis(boxes, of);
+    std::ranges::sort(of, {}, [&](std::uint32_t i) { return boxes[i].low[axis]; });
+    for (auto a = of.begin(); a != of.end(); ++a)
+        for (auto b = a + 1; b != of.end() && boxes[*b].low[axis] <= boxes[*a].high[axis]; ++b)
+            if (touch(boxes[*a], boxes[*b])) visit(*a, *b);
+}
+
 }  // namespace
 
 LightBlend::LightBlend(const Mesh& mesh, const std::vector<bool>& hidden, Across across)
@@ -80,10 +101,12 @@ void LightBlend::find_neighbours() {
         if (surface.has_chart && surface.plane != kOwnPlane) by_plane[surface.plane].push_back(i);
     }
     for (const auto& [plane, surfaces] : by_plane)
-        for (const std::uint32_t a : surfaces)
-            for (const std::uint32_t b : surfaces)
-                if (a != b && may_meet(a, b) && touch(boxes[a], boxes[b]))
-                    neighbours_[a].push_back(b);
+        for_each_touching(boxes, surfaces, [&](std::uint32_t a, std::uint32_t b) {
+            if (!may_meet(a, b)) return;
+            neighbours_[a].push_back(b);
+            neighbours_[b].push_back(a);
+        });
+    for (auto& neighbours : neighbours_) std::ranges::sort(neighbours);
 }
 
 void LightBlend::find_full_cells(std::uint32_t index) {

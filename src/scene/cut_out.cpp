@@ -30,11 +30,16 @@ struct EdgeSide {
     }
 };
 
-EdgeSide edge_side(const Outline& outline, std::size_t edge, double precision) {
-    const glm::dvec3& a = outline[edge];
-    const glm::dvec3& b = outline[(edge + 1) % outline.size()];
+std::vector<EdgeSide> edge_sides(const Outline& outline, double precision) {
     const glm::dvec3 normal = glm::normalize(doubled_area(outline));
-    return {a, glm::normalize(glm::cross(normal, b - a)), precision * longest_side(outline)};
+    const double longest = longest_side(outline);
+    std::vector<EdgeSide> sides;
+    for (std::size_t edge = 0; edge < outline.size(); ++edge) {
+        const glm::dvec3& a = outline[edge];
+        const glm::dvec3& b = outline[(edge + 1) % outline.size()];
+        sides.push_back({a, glm::normalize(glm::cross(normal, b - a)), precision * longest});
+    }
+    return sides;
 }
 
 /// Sutherland and Hodgman 1974: what lies where sign * distance >= 0.
@@ -54,11 +59,19 @@ bool reaches_beyond(const Outline& polygon, const EdgeSide& side) {
     return std::ranges::any_of(polygon, [&](const auto& p) { return side.distance(p) < 0; });
 }
 
+bool lies_beyond(const Outline& polygon, const EdgeSide& side) {
+    return std::ranges::all_of(polygon, [&](const auto& p) { return side.distance(p) < 0; });
+}
+
 /// Along each edge of the hole what lies beyond it is a piece; what is left at the end is within.
-void cut_out_of(Outline polygon, const Outline& hole, std::vector<Outline>& pieces) {
-    for (std::size_t edge = 0; edge < hole.size(); ++edge) {
-        const EdgeSide side = edge_side(hole, edge, kPrecision);
-        if (reaches_beyond(polygon, side)) pieces.push_back(clipped(polygon, side, -1));
+void cut_out_of(Outline polygon, std::span<const EdgeSide> hole, std::vector<Outline>& pieces) {
+    for (const EdgeSide& side : hole) {
+        if (!reaches_beyond(polygon, side)) continue;
+        if (lies_beyond(polygon, side)) {
+            pieces.push_back(std::move(polygon));
+            return;
+        }
+        pieces.push_back(clipped(polygon, side, -1));
         polygon = clipped(polygon, side, 1);
         if (polygon.size() < 3) return;
     }
@@ -82,16 +95,17 @@ bool is_in_plane_of(const Outline& outer, const Outline& inner) {
 }
 
 bool encloses(const Outline& outer, const Outline& inner) {
-    for (std::size_t edge = 0; edge < outer.size(); ++edge)
-        if (reaches_beyond(inner, edge_side(outer, edge, kFilePrecision))) return false;
-    return true;
+    return std::ranges::none_of(edge_sides(outer, kFilePrecision),
+                                [&](const EdgeSide& side) { return reaches_beyond(inner, side); });
 }
 
 std::vector<Outline> cut_out(const Outline& polygon, std::span<const Outline> holes) {
     std::vector<Outline> pieces{polygon};
     for (const Outline& hole : holes) {
+        const auto sides = edge_sides(hole, kPrecision);
         std::vector<Outline> cut;
-        for (Outline& piece : pieces) cut_out_of(std::move(piece), hole, cut);
+        cut.reserve(pieces.size());
+        for (Outline& piece : pieces) cut_out_of(std::move(piece), sides, cut);
         pieces = std::move(cut);
     }
     return pieces;

@@ -7,6 +7,7 @@
 
 #include "lightmap/cell_values.h"
 #include "lightmap/support.h"
+#include "support/peak_memory.h"
 
 namespace hemirad::find_splits_test {
 namespace {
@@ -39,11 +40,13 @@ std::vector<double> at_centres(const Mesh& mesh, const Light& light) {
     return values;
 }
 
-CellValues cells_of(const Mesh& mesh, const Light& light) {
+std::vector<CellValues> cells_by_side(const Mesh& mesh, const Light& light) {
     std::vector<double> areas;
     for (const Patch& patch : mesh.patches) areas.push_back(mesh.area(patch));
-    return CellValues(mesh.surfaces[0], areas, at_centres(mesh, light));
+    return cell_values_by_side(mesh.surfaces[0], areas, at_centres(mesh, light));
 }
+
+CellValues cells_of(const Mesh& mesh, const Light& light) { return cells_by_side(mesh, light)[0]; }
 
 std::size_t splits(const Mesh& mesh, const Light& light, double bound) {
     Solution solution;
@@ -75,6 +78,30 @@ TEST(CellValues, OfALargeCellAreTheMeanOfTheSmallOnes) {
     EXPECT_EQ(cells.at_scale(1, 7, 3), 15.0);
     EXPECT_TRUE(std::isnan(cells.at_scale(1, -1, 0)));
     EXPECT_TRUE(std::isnan(cells.at_scale(1, 8, 0)));
+}
+
+/// A grid for each side would take 128 MB.
+TEST(CellValues, OfSidesInAFewCellsEachTakeNoGridEach) {
+    Mesh mesh = rectangle(400, 400);
+    auto& sides = mesh.surfaces[0].side_of_patch;
+    sides.assign(mesh.patches.size(), 0);
+    for (std::uint8_t side = 1; side <= 100; ++side)
+        for (const std::size_t far : {std::size_t{0}, sides.size() - 200}) sides[far + side] = side;
+    std::vector<CellValues> cells;
+
+    const auto bytes =
+        test::peak_growth([&] { cells = cells_by_side(mesh, [](double x, double) { return x; }); });
+
+    EXPECT_LT(bytes, 30u << 20);
+    EXPECT_EQ(cells[0].at_scale(0, 200, 200), 200.5);
+    for (std::int64_t side = 1; side <= 100; ++side) {
+        const CellValues& own = cells[static_cast<std::size_t>(side)];
+        EXPECT_EQ(own.at_scale(0, side, 0), side + 0.5);
+        EXPECT_EQ(own.at_scale(0, 200 + side, 399), 200.5 + side);
+        EXPECT_TRUE(std::isnan(own.at_scale(0, side + 1, 0)));
+        EXPECT_TRUE(std::isnan(own.at_scale(0, 200, 200)));
+        EXPECT_TRUE(std::isnan(cells[0].at_scale(0, side, 0)));
+    }
 }
 
 TEST(FindSplits, FindsNoneWhereLightDoesNotChange) {
