@@ -963,6 +963,17 @@ TEST_F(ReadGltf, DecodesAnImageOnce) {
     EXPECT_LT(seconds_since(start), 20);
 }
 
+/// glTF 2.0, sec. 4.4.3.3. tinygltf would copy it for each.
+TEST_F(ReadGltf, RefusesASecondBufferInTheBinaryChunk) {
+    Json gltf = triangle_gltf();
+    gltf["buffers"].push_back({{"byteLength", 36}});
+    EXPECT_EQ(folder.error_of("a.glb", glb(gltf)),
+              "a.glb: buffers/1: has no uri, only the first buffer may lie in the binary chunk");
+
+    gltf["buffers"][1]["uri"] = gltf["buffers"][0]["uri"];
+    EXPECT_EQ(folder.error_of("a.glb", glb(gltf)), "");
+}
+
 TEST_F(ReadGltf, DoesNotReadBuffersFromTheWorkingFolder) {
     Json gltf = triangle_gltf();
     gltf["buffers"][0]["uri"] = "room.bin";
