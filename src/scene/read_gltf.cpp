@@ -405,13 +405,17 @@ std::optional<std::string> punctual_light(const GltfFile& gltf, std::size_t node
     const Json& json = gltf.json["nodes"][node];
     if (!json.contains(Json::json_pointer("/extensions/KHR_lights_punctual/light"))) return {};
     const Json& light = json["extensions"]["KHR_lights_punctual"]["light"];
-    if (!light.is_number_unsigned()) return {};
-    const auto index = std::to_string(light.get<std::uint64_t>());
+    const Json::json_pointer at("/extensions/KHR_lights_punctual/lights");
+    static const Json kNone = Json::array();
+    const Json& lights = gltf.json.contains(at) ? gltf.json[at] : kNone;
+    if (!light.is_number_unsigned() || !lights.is_array()) return {};
+    const auto index = light.get<std::uint64_t>();
+    if (index >= lights.size()) return {};
     const std::string& name = gltf.model.nodes[node].name;
     if (!name.empty()) return name;
-    const Json::json_pointer at("/extensions/KHR_lights_punctual/lights/" + index + "/name");
-    const bool named = gltf.json.contains(at) && gltf.json[at].is_string();
-    return named ? gltf.json[at].get<std::string>() : "light" + index;
+    const auto own = lights[index].find("name");
+    const bool named = own != lights[index].end() && own->is_string();
+    return named ? own->get<std::string>() : "light" + std::to_string(index);
 }
 
 /// Points, spots and suns have no faces, of which alone light comes.

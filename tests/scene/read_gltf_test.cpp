@@ -1000,6 +1000,24 @@ TEST_F(ReadGltf, RefusesASecondBufferInTheBinaryChunk) {
     EXPECT_EQ(folder.error_of("a.glb", glb(gltf)), "");
 }
 
+TEST_F(ReadGltf, TakesNoLightsNameFromBeyondTheirNumber) {
+    Json gltf = triangle_gltf();
+    gltf["nodes"][0].erase("name");
+    gltf["extensions"]["KHR_lights_punctual"]["lights"] =
+        Json::array({{{"name", "sun"}, {"type", "directional"}}});
+    auto& light = gltf["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"];
+    for (const std::uint64_t index : {std::uint64_t{1}, ~std::uint64_t{0}}) {
+        light = index;
+        EXPECT_EQ(folder.read(gltf).lights_not_taken, 0u) << index;
+    }
+    light = -1;
+    EXPECT_EQ(folder.read(gltf).lights_not_taken, 0u);
+    light = 0.5;
+    EXPECT_EQ(folder.read(gltf).lights_not_taken, 0u);
+    light = 0;
+    EXPECT_EQ(folder.read(gltf).lights_not_taken, 1u);
+}
+
 TEST_F(ReadGltf, DoesNotReadBuffersFromTheWorkingFolder) {
     Json gltf = triangle_gltf();
     gltf["buffers"][0]["uri"] = "room.bin";
