@@ -439,6 +439,48 @@ TEST_F(ReadGltf, WarnsOfTransparency) {
                                             "the material is opaque"));
 }
 
+TEST_F(ReadGltf, WarnsOnceOfVertexColours) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    auto& primitives = gltf["meshes"][0]["primitives"];
+    primitives[0]["attributes"]["COLOR_0"] = add_positions(gltf, {1, 0, 0, 1, 0, 0, 1, 0, 0});
+    primitives.push_back(primitives[0]);
+
+    EXPECT_THAT(folder.read(gltf).warnings,
+                ElementsAre("room.gltf: COLOR_0: vertex colours are not read, faces have their "
+                            "material's (meshes/0/primitives/0)"));
+}
+
+TEST_F(ReadGltf, DoesNotWarnOfVertexColoursThatNoNodeShows) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    gltf["meshes"].push_back(gltf["meshes"][0]);
+    gltf["meshes"][1]["primitives"][0]["attributes"]["COLOR_0"] = 0;
+
+    EXPECT_THAT(folder.read(gltf).warnings, IsEmpty());
+}
+
+TEST_F(ReadGltf, WarnsOnceOfInstances) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    gltf["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = Json::object();
+    gltf["nodes"].push_back(gltf["nodes"][0]);
+
+    const Scene scene = folder.read(gltf);
+
+    EXPECT_EQ(scene.faces.size(), 2u);
+    EXPECT_THAT(scene.warnings, ElementsAre("room.gltf: EXT_mesh_gpu_instancing: instances are not "
+                                            "read, a node shows its mesh once (nodes/0)"));
+}
+
+TEST_F(ReadGltf, WarnsOnceOfMaterialsOfSpecularGlossiness) {
+    Json gltf = triangle_gltf(
+        {{"name", "a"}, {"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}});
+    gltf["materials"].push_back(gltf["materials"][0]);
+
+    EXPECT_THAT(folder.read(gltf).warnings,
+                ElementsAre("room.gltf: KHR_materials_pbrSpecularGlossiness: is not read, "
+                            "materials have the base colour beside it, or white "
+                            "(material \"a\")"));
+}
+
 TEST_F(ReadGltf, EscapesControlCharactersInNames) {
     Json gltf = triangle_gltf(
         {{"name", "a\nb"}, {"pbrMetallicRoughness", {{"baseColorFactor", {2, 0, 0, 1}}}}});
