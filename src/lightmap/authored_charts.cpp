@@ -29,6 +29,13 @@ constexpr double kRangeSlack = 1e-5;
 /// Smaller, in texels, no texel's value depends on it.
 constexpr double kNoArea = 1e-6;
 
+/// As much as generated charts get at the default.
+constexpr std::uint32_t kLargestSide = 8192;
+
+/// Each is a file of its own, for which the scene is looked through: a thousand take some ten
+/// seconds.
+constexpr std::size_t kMostAtlases = 1024;
+
 constexpr std::uint32_t kNobody = 0xffffffffu;
 
 constexpr const char* kAdvice = "; --charts generated ignores the scene's and lays out new ones";
@@ -46,13 +53,46 @@ std::string text_of(const glm::dvec2& uv) {
     return text;
 }
 
-/// How full each texel of an atlas is, and of what the most.
-struct Claims {
-    std::vector<float> filled;
-    std::vector<std::uint32_t> by;  ///< in ChartLayout::authored
-
-    explicit Claims(std::size_t texels) : filled(texels, 0.0f), by(texels, kNobody) {}
+/// How full a texel is, and of what the most.
+struct Claim {
+    float filled = 0;
+    std::uint32_t by = kNobody;  ///< in ChartLayout::authored
 };
+
+/// Of an atlas, whose texels are numbered row by row. Squares of them that nobody claims take no
+/// memory: an atlas may be next to empty, and large for that very reason.
+class Claims {
+  public:
+    explicit Claims(std::size_t side)
+        : side_(side), across_(side / kSquare + 1), squares_(across_ * across_) {}
+
+    Claim& operator[](std::size_t texel) {
+        auto& square = squares_[square_of(texel)];
+        if (square.empty()) square.resize(kSquare * kSquare);
+        return square[place_of(texel)];
+    }
+    Claim at(std::size_t texel) const {
+        const auto& square = squares_[square_of(texel)];
+        return square.empty() ? Claim{} : square[place_of(texel)];
+    }
+
+  private:
+    static constexpr std::size_t kSquare = 16;
+
+    std::size_t square_of(std::size_t texel) const {
+        return texel / side_ / kSquare * across_ + texel % side_ / kSquare;
+    }
+    std::size_t place_of(std::size_t texel) const {
+        return texel / side_ % kSquare * kSquare + texel % side_ % kSquare;
+    }
+
+    std::size_t side_, across_;
+    std::vector<std::vector<Claim>> squares_;
+};
+
+bool is_authored(const Scene& scene, const FaceTriangle& triangle, ChartSource source) {
+    return source == ChartSource::authored && !scene.faces[triangle.face].lightmap_uvs.empty();
+}
 
 class Placer {
   public:
@@ -61,6 +101,7 @@ class Placer {
 
     void run() {
         collect();
+        leave_out_flat_objects();
         if (layout_.authored.empty()) return;
         side_ = settings_.atlas_size > 0 ? settings_.atlas_size : side_for_texel_size();
         for (AuthoredTriangle& triangle : layout_.authored)
@@ -102,29 +143,54 @@ class Placer {
         return settings_.flip_v ? glm::dvec2(inside.x, 1 - inside.y) : inside;
     }
 
+    /// At the largest side that there may be. Corners are still UVs.
+    bool has_area(const AuthoredTriangle& triangle) const {
+        const double side = settings_.atlas_size > 0 ? settings_.atlas_size : kLargestSide;
+        return std::abs(signed_area(triangle.texels)) * side * side >= kNoArea;
+    }
+
+    /// Some exporters write TEXCOORD_1 of 0 where there is none: such objects have no UVs.
+    void leave_out_flat_objects() {
+        std::vector<bool> shown(scene_.objects.size());
+        for (const AuthoredTriangle& triangle : layout_.authored)
+            if (has_area(triangle)) shown[object_of(triangle)] = true;
+        std::set<std::uint32_t> left_out;
+        std::erase_if(layout_.authored, [&](const AuthoredTriangle& triangle) {
+            const std::uint32_t object = object_of(triangle);
+            if (!shown[object]) left_out.insert(object);
+            return !shown[object];
+        });
+        if (left_out.empty()) return;
+        layout_.warnings.push_back(names_of(left_out) +
+                                   ": TEXCOORD_1 are without area, charts are generated");
+    }
+
     /// A power of two, so that the mean texel is no larger than asked for.
     std::uint32_t side_for_texel_size() const {
-        constexpr double kLargest = 8192;  // as much as generated charts get at the default
         double area = 0, in_atlas = 0;
         for (const AuthoredTriangle& triangle : layout_.authored) {
+            if (!has_area(triangle)) continue;
             area += std::abs(signed_area(triangle.at));
             in_atlas += std::abs(signed_area(triangle.texels));
         }
-        const double side = std::sqrt(area / std::max(in_atlas, 1e-12)) / layout_.texel_size;
+        const double side = std::sqrt(area / in_atlas) / layout_.texel_size;
         return std::bit_ceil(
-            static_cast<std::uint32_t>(std::clamp(std::ceil(side), 1.0, kLargest)));
+            static_cast<std::uint32_t>(std::clamp(std::ceil(side), 1.0, double{kLargestSide})));
+    }
+
+    std::uint32_t object_of(const AuthoredTriangle& authored) const {
+        return scene_.faces[mesh_.face_triangles[authored.face_triangle].face].object;
     }
 
     std::uint32_t object_of(std::uint32_t authored) const {
-        const auto& triangle = mesh_.face_triangles[layout_.authored[authored].face_triangle];
-        return scene_.faces[triangle.face].object;
+        return object_of(layout_.authored[authored]);
     }
 
     void place_objects() {
         std::vector<std::vector<std::uint32_t>> by_object(scene_.objects.size());
         for (std::uint32_t i = 0; i < layout_.authored.size(); ++i)
             by_object[object_of(i)].push_back(i);
-        Claims own(texel_count());
+        Claims own(side_);
         for (const auto& triangles : by_object) {
             if (triangles.empty()) continue;
             const auto texels = claim(triangles, own);
@@ -133,8 +199,6 @@ class Placer {
             hand_over(texels, own, atlases_[atlas]);
         }
     }
-
-    std::size_t texel_count() const { return std::size_t{side_} * side_; }
 
     /// Which texels the triangles of an object claim.
     std::vector<std::size_t> claim(const std::vector<std::uint32_t>& triangles, Claims& own) {
@@ -145,11 +209,12 @@ class Placer {
             for (const glm::dvec2& corner : layout_.authored[i].texels) polygon.add(corner);
             find_texel_areas(polygon, {0, 0, side_, side_}, areas);
             for (const auto& [x, y, area] : areas) {
-                const std::size_t texel = std::size_t{y} * side_ + x;
                 if (area <= 0) continue;
-                if (own.filled[texel] == 0) texels.push_back(texel);
-                if (own.by[texel] == kNobody) own.by[texel] = i;
-                own.filled[texel] += static_cast<float>(area);
+                const std::size_t texel = std::size_t{y} * side_ + x;
+                Claim& claim = own[texel];
+                if (claim.filled == 0) texels.push_back(texel);
+                if (claim.by == kNobody) claim.by = i;
+                claim.filled += static_cast<float>(area);
             }
         }
         settle_overlaps(object_of(triangles.front()), texels, own);
@@ -162,11 +227,12 @@ class Placer {
         double claimed = 0, twice = 0;
         std::size_t first = 0;
         for (const std::size_t texel : texels) {
-            claimed += own.filled[texel];
-            if (own.filled[texel] <= 1 + kOverlapSlack) continue;
+            float& filled = own[texel].filled;
+            claimed += filled;
+            if (filled <= 1 + kOverlapSlack) continue;
             if (twice == 0) first = texel;
-            twice += own.filled[texel] - 1;
-            own.filled[texel] = 1;
+            twice += filled - 1;
+            filled = 1;
         }
         if (twice > kMostOverlap * claimed) refuse(object, first);
         if (twice > 0) warn_of_overlap(object, twice / claimed, first);
@@ -197,18 +263,30 @@ class Placer {
         std::uint32_t in_the_way = kNobody;
         for (std::uint32_t atlas = 0; atlas < atlases_.size(); ++atlas) {
             const auto taken = std::ranges::find_if(texels, [&](std::size_t texel) {
-                return atlases_[atlas].filled[texel] + own.filled[texel] > 1 + kOverlapSlack;
+                return atlases_[atlas].at(texel).filled + own.at(texel).filled > 1 + kOverlapSlack;
             });
             if (taken == texels.end()) {
                 if (atlas > 0) warn_of_atlas(object, in_the_way, atlas);
                 return atlas;
             }
-            if (atlas == 0) in_the_way = object_of(atlases_[0].by[*taken]);
+            if (atlas == 0) in_the_way = object_of(atlases_[0].at(*taken).by);
         }
-        atlases_.emplace_back(texel_count());
+        check_count(object);
+        atlases_.emplace_back(side_);
         const auto atlas = static_cast<std::uint32_t>(atlases_.size() - 1);
         if (atlas > 0) warn_of_atlas(object, in_the_way, atlas);
         return atlas;
+    }
+
+    /// Whether there may be one more.
+    void check_count(std::uint32_t object) const {
+        const auto most_of_side = static_cast<std::size_t>(kMostTexels / (1.0 * side_ * side_));
+        if (atlases_.size() < std::min(kMostAtlases, most_of_side)) return;
+        throw InputError(name_of(object) + ": its TEXCOORD_1 claim texels of objects in each of " +
+                         std::to_string(atlases_.size()) + " lightmaps of " +
+                         size_text(side_, side_) + " texels, the most there may be" +
+                         (most_of_side < kMostAtlases ? ", a smaller --atlas-size aside" : "") +
+                         kAdvice);
     }
 
     void warn_of_atlas(std::uint32_t object, std::uint32_t other, std::uint32_t atlas) {
@@ -219,10 +297,10 @@ class Placer {
 
     static void hand_over(const std::vector<std::size_t>& texels, Claims& own, Claims& atlas) {
         for (const std::size_t texel : texels) {
-            atlas.filled[texel] += own.filled[texel];
-            if (atlas.by[texel] == kNobody) atlas.by[texel] = own.by[texel];
-            own.filled[texel] = 0;
-            own.by[texel] = kNobody;
+            Claim& claim = atlas[texel];
+            claim.filled += own[texel].filled;
+            if (claim.by == kNobody) claim.by = own[texel].by;
+            own[texel] = {};
         }
     }
 
@@ -251,10 +329,13 @@ class Placer {
 
     void warn_of(std::size_t count, const std::set<std::uint32_t>& objects, const char* what) {
         if (count == 0) return;
-        const auto names = names_in_short(objects.size(), 1,
-                                          [&](std::size_t) { return name_of(*objects.begin()); });
-        layout_.warnings.push_back(names + ": " + std::to_string(count) +
+        layout_.warnings.push_back(names_of(objects) + ": " + std::to_string(count) +
                                    (count == 1 ? " triangle is " : " triangles are ") + what);
+    }
+
+    std::string names_of(const std::set<std::uint32_t>& objects) const {
+        return names_in_short(objects.size(), 1,
+                              [&](std::size_t) { return name_of(*objects.begin()); });
     }
 
     const Scene& scene_;
@@ -266,10 +347,6 @@ class Placer {
 };
 
 }  // namespace
-
-bool is_authored(const Scene& scene, const FaceTriangle& triangle, ChartSource source) {
-    return source == ChartSource::authored && !scene.faces[triangle.face].lightmap_uvs.empty();
-}
 
 void place_authored(const Scene& scene, const Mesh& mesh, const ChartSettings& settings,
                     ChartLayout& layout) {

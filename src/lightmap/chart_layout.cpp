@@ -16,9 +16,6 @@ namespace {
 /// Charts at the default texel size fill at most this much: a quarter of the largest atlas.
 constexpr double kDefaultTexelLimit = 8192.0 * 8192.0;
 
-/// Of all atlases together: some 4 GB a float a band and coverage.
-constexpr double kMostTexels = double{kLargestAtlas} * kLargestAtlas;
-
 /// Cell edges divide by texel sizes with rounding: 2.0 / 0.1 texels shall be 20, not 21.
 constexpr double kWholeTexelSlack = 1e-6;
 
@@ -51,11 +48,14 @@ std::vector<bool> surfaces_with_chart(const Mesh& mesh) {
     return with_chart;
 }
 
-std::vector<bool> surfaces_with_chart(const Scene& scene, const Mesh& mesh, ChartSource source) {
+std::vector<bool> surfaces_with_chart(const Mesh& mesh,
+                                      const std::vector<AuthoredTriangle>& authored) {
     std::vector<bool> with_chart = surfaces_with_chart(mesh);
     std::vector<bool> needs_one(mesh.surfaces.size(), false);
-    for (const FaceTriangle& triangle : mesh.face_triangles)
-        if (!is_authored(scene, triangle, source)) needs_one[triangle.surface] = true;
+    std::vector<bool> lies_elsewhere(mesh.face_triangles.size(), false);
+    for (const AuthoredTriangle& triangle : authored) lies_elsewhere[triangle.face_triangle] = true;
+    for (std::size_t i = 0; i < mesh.face_triangles.size(); ++i)
+        if (!lies_elsewhere[i]) needs_one[mesh.face_triangles[i].surface] = true;
     for (std::size_t front = 0; front < mesh.surfaces.size(); ++front) {
         if (mesh.surfaces[front].is_back || needs_one[front]) continue;
         with_chart[front] = false;
@@ -227,7 +227,7 @@ ChartLayout lay_out_charts(const Mesh& mesh, const ChartSettings& settings) {
 ChartLayout lay_out_charts(const Scene& scene, const Mesh& mesh, const ChartSettings& settings) {
     ChartLayout layout = empty_layout(mesh, settings);
     place_authored(scene, mesh, settings, layout);
-    generate_charts(mesh, surfaces_with_chart(scene, mesh, settings.source), settings, layout);
+    generate_charts(mesh, surfaces_with_chart(mesh, layout.authored), settings, layout);
     return layout;
 }
 

@@ -15,6 +15,10 @@ namespace hemirad {
 /// Longest side of an atlas: what current GPUs take as a texture.
 inline constexpr std::uint32_t kLargestAtlas = 16384;
 
+/// Of all atlases of generated charts together, and of all of authored ones: some 4 GB a float a
+/// band and coverage.
+inline constexpr double kMostTexels = double{kLargestAtlas} * kLargestAtlas;
+
 /// Between charts there is twice this: room for bilinear filtering, and in images halved once or,
 /// where charts lie well, twice.
 inline constexpr std::uint32_t kDefaultPadding = 4;
@@ -68,8 +72,8 @@ struct ChartLayout {
     std::vector<std::string> moved;          ///< the same, of objects that are not in their atlas
 };
 
-/// Half of the shorter cell edge that a twentieth of the charts' area is below, but not so small that
-/// the charts alone would fill an atlas of 8192 x 8192.
+/// Half of the shorter cell edge that a twentieth of the charts' area is below, but not so small
+/// that the charts alone would fill an atlas of 8192 x 8192.
 double default_texel_size(const Mesh& mesh);
 
 /// A chart for each surface that has one, packed into an atlas as square as possible, or into
@@ -81,7 +85,7 @@ ChartLayout lay_out_charts(const Mesh& mesh, const ChartSettings& settings = {})
 /// The same, but faces with UVs of their own, unless the settings ask for generated charts, lie
 /// where these say: in the first atlas, or, where they would share texels with an earlier object,
 /// in the next that is free. Backs of such faces have no chart. Throws InputError where UVs are
-/// outside [0, 1] or an object's overlap.
+/// outside [0, 1], an object's overlap, or too many atlases would be needed.
 ChartLayout lay_out_charts(const Scene& scene, const Mesh& mesh, const ChartSettings& settings);
 
 /// Where a point of the surface lies in the atlas, in texels from its top left corner; the centre

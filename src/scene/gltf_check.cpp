@@ -163,6 +163,15 @@ void check_uris(const InputFile& file, const Json& json) {
     }
 }
 
+/// glTF 2.0, sec. 4.4.3.3: the first alone lies in a GLB's binary chunk. tinygltf would copy the
+/// chunk for each that has no URI.
+void check_binary_chunk(const InputFile& file, const Json& json) {
+    for_each(json, "buffers/*", [&](const std::string& path, const Json& buffer) {
+        if (path == "buffers/0" || !buffer.value("uri", "").empty()) return;
+        fail(file, path, "has no uri, only the first buffer may lie in the binary chunk");
+    });
+}
+
 /// tinygltf would quote the whole URI.
 void check_data_uris(const InputFile& file, const Json& json) {
     constexpr std::string_view kMarker = ";base64,";
@@ -259,6 +268,7 @@ void check_gltf(const InputFile& file, const Json& json) {
     check_references(file, json);
     check_numbers(file, json);
     check_uris(file, json);
+    check_binary_chunk(file, json);
     check_data_uris(file, json);
     check_buffer_views(file, json);
 }

@@ -43,7 +43,8 @@ struct Pixels {
     std::unique_ptr<void, FreePixels> of_8_bits = {}, of_16_bits = {};  ///< one of them
 };
 
-/// How often each sample value occurs, per channel: the average then decodes each value once.
+/// How often each sample value occurs, per channel: the average then decodes each value that there
+/// is once.
 template <class Sample>
 Rgb average(const Pixels& pixels, const void* first) {
     constexpr std::size_t kValues = std::size_t{std::numeric_limits<Sample>::max()} + 1;
@@ -51,10 +52,15 @@ Rgb average(const Pixels& pixels, const void* first) {
     const bool is_grey = pixels.channels < 3;
     Rgb mean{};
     for (std::size_t channel = 0; channel < mean.size(); ++channel) {
+        if (is_grey && channel > 0) {
+            mean[channel] = mean[0];
+            continue;
+        }
         std::vector<std::uint64_t> counts(kValues);
         for (std::size_t pixel = 0; pixel < pixels.count; ++pixel)
-            ++counts[samples[pixel * pixels.channels + (is_grey ? 0 : channel)]];
+            ++counts[samples[pixel * pixels.channels + channel]];
         for (std::size_t value = 0; value < kValues; ++value) {
+            if (counts[value] == 0) continue;
             mean[channel] +=
                 double(counts[value]) * linear_from_srgb(double(value) / double(kValues - 1));
         }

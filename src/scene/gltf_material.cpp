@@ -130,6 +130,18 @@ void warn_of_transparency(const Json& json, const std::string& name, Scene& scen
     warn(scene, "material " + in_quotes(name), "alphaMode is not read, the material is opaque");
 }
 
+/// Its diffuse colour is what such materials have to say of reflectance. Once a file.
+void warn_of_specular_glossiness(const GltfFile& gltf, const Json& materials, Scene& scene) {
+    static const Json::json_pointer kExtension("/extensions/KHR_materials_pbrSpecularGlossiness");
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        if (!materials[i].contains(kExtension)) continue;
+        const std::string name = in_quotes(material_name(gltf.file, materials[i], i));
+        return warn(scene, kExtension.back(),
+                    "is not read, materials have the base colour beside it, or white (material " +
+                        name + ")");
+    }
+}
+
 }  // namespace
 
 void read_gltf_materials(const GltfFile& gltf, Scene& scene) {
@@ -137,7 +149,10 @@ void read_gltf_materials(const GltfFile& gltf, Scene& scene) {
     const auto found = gltf.json.find("materials");
     const Json& list = found == gltf.json.end() ? none : *found;
     const std::vector<std::string> bands = named_bands(gltf, list);
-    if (bands.empty()) check_images(gltf, list);
+    if (bands.empty()) {
+        check_images(gltf, list);
+        warn_of_specular_glossiness(gltf, list, scene);
+    }
     ImageAverages images{gltf};
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::string name = material_name(gltf.file, list[i], i);

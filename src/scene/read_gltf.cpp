@@ -29,7 +29,14 @@ struct Builder {
     Scene scene = {};
     std::optional<std::uint32_t> default_material = {};
     std::map<int, std::vector<std::size_t>> primitives = {};  ///< of meshes, those with faces
+    std::set<std::string> told = {};                          ///< what is not read
 };
+
+/// Of what is not read, with the first place in the file that has it.
+void warn_once(Builder& builder, const std::string& what, const std::string& reason,
+               const std::string& path) {
+    if (builder.told.insert(what).second) warn(builder.scene, what, reason + " (" + path + ")");
+}
 
 std::string node_path(std::size_t node) { return "nodes/" + std::to_string(node); }
 
@@ -376,14 +383,24 @@ const std::vector<std::size_t>& primitives_of(Builder& builder, int mesh) {
     const auto [entry, is_new] = builder.primitives.try_emplace(mesh);
     if (!is_new) return entry->second;
     const auto& all = builder.gltf.model.meshes[static_cast<std::size_t>(mesh)].primitives;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (has_faces(builder, primitive_path(mesh, i), all[i])) entry->second.push_back(i);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::string path = primitive_path(mesh, i);
+        if (!has_faces(builder, path, all[i])) continue;
+        entry->second.push_back(i);
+        if (all[i].attributes.contains("COLOR_0"))
+            warn_once(builder, "COLOR_0",
+                      "vertex colours are not read, faces have their material's", path);
+    }
     return entry->second;
 }
 
 void add_mesh(Builder& builder, const PlacedNode& node) {
     const auto& source = builder.gltf.model.nodes[node.node];
     if (source.mesh < 0) return;
+    static const Json::json_pointer kInstances("/extensions/EXT_mesh_gpu_instancing");
+    if (builder.gltf.json["nodes"][node.node].contains(kInstances))
+        warn_once(builder, "EXT_mesh_gpu_instancing",
+                  "instances are not read, a node shows its mesh once", node_path(node.node));
     if (source.skin >= 0) warn(builder.scene, node_path(node.node), "is read without its skin");
     const bool mirrored = glm::determinant(glm::dmat3(node.world_from_node)) < 0;
     const std::uint32_t object = add_object(builder, node.node);
@@ -405,13 +422,17 @@ std::optional<std::string> punctual_light(const GltfFile& gltf, std::size_t node
     const Json& json = gltf.json["nodes"][node];
     if (!json.contains(Json::json_pointer("/extensions/KHR_lights_punctual/light"))) return {};
     const Json& light = json["extensions"]["KHR_lights_punctual"]["light"];
-    if (!light.is_number_unsigned()) return {};
-    const auto index = std::to_string(light.get<std::uint64_t>());
+    const Json::json_pointer at("/extensions/KHR_lights_punctual/lights");
+    static const Json kNone = Json::array();
+    const Json& lights = gltf.json.contains(at) ? gltf.json[at] : kNone;
+    if (!light.is_number_unsigned() || !lights.is_array()) return {};
+    const auto index = light.get<std::uint64_t>();
+    if (index >= lights.size()) return {};
     const std::string& name = gltf.model.nodes[node].name;
     if (!name.empty()) return name;
-    const Json::json_pointer at("/extensions/KHR_lights_punctual/lights/" + index + "/name");
-    const bool named = gltf.json.contains(at) && gltf.json[at].is_string();
-    return named ? gltf.json[at].get<std::string>() : "light" + index;
+    const auto own = lights[index].find("name");
+    const bool named = own != lights[index].end() && own->is_string();
+    return named ? own->get<std::string>() : "light" + std::to_string(index);
 }
 
 /// Points, spots and suns have no faces, of which alone light comes.

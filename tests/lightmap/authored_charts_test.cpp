@@ -5,6 +5,7 @@
 #include "lightmap/rasterize.h"
 #include "lightmap/support.h"
 #include "scene/scenes_by_hand.h"
+#include "support/peak_memory.h"
 
 // Charts that the scene brings along.
 namespace hemirad::authored_charts_test {
@@ -231,10 +232,10 @@ TEST(AuthoredCharts, UvsOutsideOfTheLightmapAreRefusedByName) {
 
 TEST(AuthoredCharts, MirroredAndFlatTrianglesAreToldByName) {
     Scene scene = square(kWhole);
-    add_square(scene, 5, Uvs(4, {0.5, 0.5}), 1);
+    add_square(scene, 5, Uvs(4, {0.5, 0.5}));
     EXPECT_EQ(
         laid_out(scene).layout.warnings.back(),
-        "hand.obj: \"other\": 2 triangles are without area in TEXCOORD_1, no texel shows them");
+        "hand.obj: \"floor\": 2 triangles are without area in TEXCOORD_1, no texel shows them");
 
     Uvs mirrored = kWhole;
     std::reverse(mirrored.begin(), mirrored.end());
@@ -242,6 +243,81 @@ TEST(AuthoredCharts, MirroredAndFlatTrianglesAreToldByName) {
         laid_out(square(mirrored)).layout.warnings.back(),
         "hand.obj: \"floor\": 2 triangles are mirrored in TEXCOORD_1, as all are: is V to run "
         "up (--flip-v)?");
+}
+
+TEST(AuthoredCharts, TrianglesWithoutAreaInTheLightmapDoNotAskForTexels) {
+    Scene scene = square(kWhole);
+    for (double x = 5; x < 500; x += 5) add_square(scene, x, Uvs(4, {0.5, 0.5}));
+
+    const auto layout = laid_out(scene, {.texel_size = 0.25}).layout;
+
+    ASSERT_EQ(layout.atlases.size(), 1u);
+    EXPECT_EQ(layout.atlases[0].width, 4u);
+}
+
+// As exporters write them who have none.
+TEST(AuthoredCharts, AnObjectWhoseUvsHaveNoAreaGetsGeneratedChartsWithAWarning) {
+    Scene scene = square(kWhole);
+    add_square(scene, 5, Uvs(4, {0, 0}), 1);
+
+    const auto [mesh, layout] = laid_out(scene, {.texel_size = 0.25});
+
+    EXPECT_EQ(layout.authored.size(), 2u);
+    ASSERT_EQ(layout.charts.size(), 1u);
+    EXPECT_EQ(layout.charts[0].atlas, 1u);
+    EXPECT_EQ(lightmap_uvs(scene, mesh, layout).back().atlas, 1u);
+    ASSERT_EQ(layout.warnings.size(), 1u);
+    EXPECT_EQ(layout.warnings[0],
+              "hand.obj: \"other\": TEXCOORD_1 are without area, charts are generated");
+}
+
+TEST(AuthoredCharts, ASceneWhoseUvsHaveNoAreaGetsNoAtlasOfThem) {
+    const auto layout = laid_out(square(Uvs(4, {0, 0})), {.texel_size = 0.25}).layout;
+
+    EXPECT_TRUE(layout.authored.empty());
+    ASSERT_EQ(layout.atlases.size(), 1u);
+    EXPECT_LT(layout.atlases[0].width, 64u);
+}
+
+Scene instances(std::uint32_t count, const Uvs& uvs) {
+    Scene scene = empty_scene();
+    scene.objects.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        scene.objects.push_back(std::to_string(i));
+        add_square(scene, 2 * i, uvs, i);
+    }
+    return scene;
+}
+
+TEST(AuthoredCharts, InstancesThatWouldFillMoreThanAThousandLightmapsAreRefused) {
+    EXPECT_EQ(laid_out(instances(1024, kWhole), {.atlas_size = 1}).layout.atlases.size(), 1024u);
+    EXPECT_EQ(refusal(instances(1025, kWhole), {.atlas_size = 1}),
+              "hand.obj: \"1024\": its TEXCOORD_1 claim texels of objects in each of 1024 "
+              "lightmaps of 1 x 1 texels, the most there may be; --charts generated ignores the "
+              "scene's and lays out new ones");
+}
+
+// An eighth of a texel wide, as high as the atlas, one in each 256 columns.
+TEST(AuthoredCharts, StripsTakeNoMoreMemoryThanWhatTheyCross) {
+    Scene scene = empty_scene();
+    for (std::uint32_t i = 0; i < 32; ++i)
+        add_square(scene, 2 * i, in_part({i / 32.0, 0}, {i / 32.0 + 1 / 65536.0, 1}));
+
+    const auto asked = test::peak_growth([&] { laid_out(scene, {.atlas_size = 8192}); });
+
+    EXPECT_LT(asked, std::size_t{300} << 20);
+}
+
+TEST(AuthoredCharts, LightmapsOfMoreTexelsThanAreMadeAreRefusedBeforeMemoryIsAskedFor) {
+    const Uvs uvs = in_part({0.5, 0.5}, {0.501, 0.501});
+    const auto asked = test::peak_growth([&] {
+        EXPECT_EQ(laid_out(instances(4, uvs), {.atlas_size = 8192}).layout.atlases.size(), 4u);
+        EXPECT_EQ(refusal(instances(5, uvs), {.atlas_size = 8192}),
+                  "hand.obj: \"4\": its TEXCOORD_1 claim texels of objects in each of 4 lightmaps "
+                  "of 8192 x 8192 texels, the most there may be, a smaller --atlas-size aside; "
+                  "--charts generated ignores the scene's and lays out new ones");
+    });
+    EXPECT_LT(asked, std::size_t{300} << 20);
 }
 
 }  // namespace

@@ -439,6 +439,48 @@ TEST_F(ReadGltf, WarnsOfTransparency) {
                                             "the material is opaque"));
 }
 
+TEST_F(ReadGltf, WarnsOnceOfVertexColours) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    auto& primitives = gltf["meshes"][0]["primitives"];
+    primitives[0]["attributes"]["COLOR_0"] = add_positions(gltf, {1, 0, 0, 1, 0, 0, 1, 0, 0});
+    primitives.push_back(primitives[0]);
+
+    EXPECT_THAT(folder.read(gltf).warnings,
+                ElementsAre("room.gltf: COLOR_0: vertex colours are not read, faces have their "
+                            "material's (meshes/0/primitives/0)"));
+}
+
+TEST_F(ReadGltf, DoesNotWarnOfVertexColoursThatNoNodeShows) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    gltf["meshes"].push_back(gltf["meshes"][0]);
+    gltf["meshes"][1]["primitives"][0]["attributes"]["COLOR_0"] = 0;
+
+    EXPECT_THAT(folder.read(gltf).warnings, IsEmpty());
+}
+
+TEST_F(ReadGltf, WarnsOnceOfInstances) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    gltf["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = Json::object();
+    gltf["nodes"].push_back(gltf["nodes"][0]);
+
+    const Scene scene = folder.read(gltf);
+
+    EXPECT_EQ(scene.faces.size(), 2u);
+    EXPECT_THAT(scene.warnings, ElementsAre("room.gltf: EXT_mesh_gpu_instancing: instances are not "
+                                            "read, a node shows its mesh once (nodes/0)"));
+}
+
+TEST_F(ReadGltf, WarnsOnceOfMaterialsOfSpecularGlossiness) {
+    Json gltf = triangle_gltf(
+        {{"name", "a"}, {"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}});
+    gltf["materials"].push_back(gltf["materials"][0]);
+
+    EXPECT_THAT(folder.read(gltf).warnings,
+                ElementsAre("room.gltf: KHR_materials_pbrSpecularGlossiness: is not read, "
+                            "materials have the base colour beside it, or white "
+                            "(material \"a\")"));
+}
+
 TEST_F(ReadGltf, EscapesControlCharactersInNames) {
     Json gltf = triangle_gltf(
         {{"name", "a\nb"}, {"pbrMetallicRoughness", {{"baseColorFactor", {2, 0, 0, 1}}}}});
@@ -961,6 +1003,61 @@ TEST_F(ReadGltf, DecodesAnImageOnce) {
 
     EXPECT_EQ(scene.materials[kTextures - 1].emission, std::vector(3, 1.0));
     EXPECT_LT(seconds_since(start), 20);
+}
+
+/// Of one pixel each; decoding whatever value a pixel may have takes twelve seconds.
+TEST_F(ReadGltf, DecodesOnlyTheValuesThatAnImageHas) {
+    Json gltf = triangle_gltf({{"name", "a"}});
+    constexpr std::size_t kImages = 3000;
+    // One row, stored; a byte more for each image, which no decoder looks at, makes another of it.
+    const std::string row("\0\xff\xff\xff\xff\xff\xff", 7);
+    const std::string image =
+        png(1, 1, 16, std::string("\x78\x01\x01\x07\0\xf8\xff", 7) + row + "\0\0\0\0");
+    const std::string bytes = image + std::string(kImages, '\0');
+    add_accessor(gltf, std::vector<char>(bytes.begin(), bytes.end()), "SCALAR", 5121, 1);
+    gltf["materials"] = Json::array();
+    for (std::size_t i = 0; i < kImages; ++i) {
+        gltf["bufferViews"].push_back({{"buffer", 1}, {"byteLength", image.size() + i}});
+        gltf["images"].push_back({{"bufferView", 2 + i}, {"mimeType", "image/png"}});
+        gltf["textures"].push_back({{"source", i}});
+        gltf["materials"].push_back(
+            {{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", i}}}});
+    }
+
+    const auto start = std::clock();
+    const Scene scene = folder.read(gltf);
+
+    EXPECT_EQ(scene.materials[kImages - 1].emission, std::vector(3, 1.0));
+    EXPECT_LT(seconds_since(start), 8);
+}
+
+/// glTF 2.0, sec. 4.4.3.3. tinygltf would copy it for each.
+TEST_F(ReadGltf, RefusesASecondBufferInTheBinaryChunk) {
+    Json gltf = triangle_gltf();
+    gltf["buffers"].push_back({{"byteLength", 36}});
+    EXPECT_EQ(folder.error_of("a.glb", glb(gltf)),
+              "a.glb: buffers/1: has no uri, only the first buffer may lie in the binary chunk");
+
+    gltf["buffers"][1]["uri"] = gltf["buffers"][0]["uri"];
+    EXPECT_EQ(folder.error_of("a.glb", glb(gltf)), "");
+}
+
+TEST_F(ReadGltf, TakesNoLightsNameFromBeyondTheirNumber) {
+    Json gltf = triangle_gltf();
+    gltf["nodes"][0].erase("name");
+    gltf["extensions"]["KHR_lights_punctual"]["lights"] =
+        Json::array({{{"name", "sun"}, {"type", "directional"}}});
+    auto& light = gltf["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"];
+    for (const std::uint64_t index : {std::uint64_t{1}, ~std::uint64_t{0}}) {
+        light = index;
+        EXPECT_EQ(folder.read(gltf).lights_not_taken, 0u) << index;
+    }
+    light = -1;
+    EXPECT_EQ(folder.read(gltf).lights_not_taken, 0u);
+    light = 0.5;
+    EXPECT_EQ(folder.read(gltf).lights_not_taken, 0u);
+    light = 0;
+    EXPECT_EQ(folder.read(gltf).lights_not_taken, 1u);
 }
 
 TEST_F(ReadGltf, DoesNotReadBuffersFromTheWorkingFolder) {
