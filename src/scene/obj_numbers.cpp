@@ -95,7 +95,8 @@ std::string unfold_lines(const std::string& bytes) {
     std::string text;
     text.reserve(bytes.size() + 1);
     std::size_t owed = 0, line_begin = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";  // of byte order; some editors put it there
+    for (std::size_t i = bytes.starts_with(kMark) ? kMark.size() : 0; i < bytes.size(); ++i) {
         const bool is_pair = bytes[i] == '\r' && i + 1 < bytes.size() && bytes[i + 1] == '\n';
         if (is_pair) continue;
         if (bytes[i] != '\n' && bytes[i] != '\r') {

@@ -167,6 +167,19 @@ TEST_F(ReadObj, TakesEveryLineEndAndContinuedLines) {
     EXPECT_THAT(scene.faces[0].vertices, ElementsAre(0, 1, 2, 3));
 }
 
+TEST_F(ReadObj, SkipsAByteOrderMark) {
+    const std::string mark = "\xef\xbb\xbf";
+    folder.write("a.mtl", mark + "newmtl a\nKd 0.1 0.1 0.1\n");
+
+    const Scene scene =
+        folder.read("a.obj", mark + "v 9 9 9\nmtllib a.mtl\n" + kSquare + "usemtl a\nf 2 3 4\n");
+
+    EXPECT_EQ(scene.positions.size(), 5u);
+    EXPECT_EQ(scene.positions[scene.faces.at(0).vertices[0]], glm::dvec3(0, 0, 0));
+    EXPECT_EQ(scene.materials.at(0).name, "a");
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
 TEST_F(ReadObj, EscapesControlCharactersInNames) {
     const Scene scene =
         folder.read("a.obj", "o a\x1b[31mb\nusemtl c\x07\n" + kSquare + "f 1 2 3\n");
