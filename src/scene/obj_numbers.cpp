@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "scene/input_line.h"
-#include "scene/quantum.h"
 
 namespace hemirad {
 namespace {
@@ -115,19 +114,18 @@ std::string unfold_lines(const std::string& bytes) {
 
 ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
     ObjNumbers numbers;
-    TextQuantum quantum;
     std::size_t squares = 0;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
         const InputLine place{file, number};
-        if (keyword == "v") numbers.positions.push_back(read_vector(place, line, quantum));
+        if (keyword == "v")
+            numbers.positions.push_back(read_vector(place, line, numbers.quanta.emplace_back()));
         if (keyword != "f") return;
         const std::size_t corners = check_face(place, line);
         squares += corners * corners;
         numbers.face_lines.push_back(number);
     });
     check_squares(file, squares, text.size());
-    numbers.quantum = quantum.value();
     return numbers;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/input_file.h"
+#include "scene/quantum.h"
 
 namespace hemirad {
 
@@ -13,7 +14,7 @@ namespace hemirad {
 /// by digit; so it reads the structure, and every number is read and checked here, to the last bit.
 struct ObjNumbers {
     std::vector<glm::dvec3> positions;
-    double quantum = 0;                   ///< m, see Scene
+    std::vector<TextQuantum> quanta;      ///< of each position
     std::vector<std::size_t> face_lines;  ///< line of each `f`, from 1
 };
 

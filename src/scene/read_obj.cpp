@@ -193,6 +193,14 @@ tinyobj::callback_t callbacks() {
     return callback;
 }
 
+/// Of the positions that faces use: one that is far off tells nothing of the others.
+double quantum_of(const ObjFile& obj) {
+    TextQuantum quantum;
+    for (const Face& face : obj.scene.faces)
+        for (const std::uint32_t v : face.vertices) quantum.add(obj.numbers.quanta[v]);
+    return quantum.value();
+}
+
 }  // namespace
 
 Scene read_obj(const InputFile& file) {
@@ -206,7 +214,7 @@ Scene read_obj(const InputFile& file) {
     std::string warning, error;
     tinyobj::LoadObjWithCallback(stream, callbacks(), &obj, &library, &warning, &error);
     if (!error.empty()) fail(file, "OBJ", printable(error));
-    obj.scene.quantum = obj.numbers.quantum;
+    obj.scene.quantum = quantum_of(obj);
     obj.scene.positions = std::move(obj.numbers.positions);
     return std::move(obj.scene);
 }
