@@ -51,9 +51,8 @@ struct LitMaterial {
 using Primitives = std::map<LitMaterial, Primitive>;
 
 /// Far from the origin floats would be too coarse; a node takes coordinates there in double.
-glm::dvec3 root_of(const Scene& scene) {
+glm::dvec3 root_of(const Bounds& bounds) {
     constexpr double kNear = 4;  // extents: two bits of a float's 24
-    const Bounds bounds = bounds_of(scene.positions);
     const glm::dvec3 middle = bounds.middle();
     return glm::length(middle) < kNear * bounds.diagonal() ? glm::dvec3(0) : middle;
 }
@@ -326,7 +325,8 @@ void write_gltf(const std::filesystem::path& path, const Scene& scene, const Mes
                 const std::vector<Camera>& cameras, const std::vector<UvTriangle>& triangles,
                 const std::vector<LightmapImage>& images, const std::filesystem::path& exr) {
     Buffer buffer;
-    const glm::dvec3 root = root_of(scene);
+    const Bounds bounds = bounds_of(scene);
+    const glm::dvec3 root = root_of(bounds);
     Json gltf{{"asset", {{"version", "2.0"}, {"generator", "hemirad"}}}};
     gltf["asset"]["extras"]["hemirad"] = {{"exr", exr.generic_string()},
                                           {"atlases", images.size()}};
