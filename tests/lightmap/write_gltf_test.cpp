@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "errors.h"
 #include "lightmap/rasterize.h"
 #include "lightmap/support.h"
 #include "scene/bounds.h"
@@ -182,6 +183,22 @@ TEST_F(WriteGltf, VerticesThatNoFaceUsesRoundNothing) {
     const Bounds bounds = bounds_of(read.positions);
     EXPECT_LT(glm::distance(bounds.least, shift), 1e-6);
     EXPECT_LT(glm::distance(bounds.most, shift + glm::dvec3(2, 1, 0)), 1e-6);
+}
+
+TEST_F(WriteGltf, RefusesWhatFloatsCannotHold) {
+    Scene scene = quad();
+    for (glm::dvec3& p : scene.positions) p *= 1e40;
+    Lit a = lit(quad());
+    a.scene = scene;
+
+    try {
+        round_trip(a);
+        FAIL() << "written";
+    } catch (const OutputError& error) {
+        EXPECT_EQ(error.what(),
+                  file("a.glb").string() + ": a coordinate of 2e+40 m is beyond glTF's floats");
+    }
+    EXPECT_FALSE(std::filesystem::exists(file("a.glb")));
 }
 
 TEST_F(WriteGltf, BandsOfItsOwnComeBack) {
