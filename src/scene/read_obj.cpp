@@ -50,10 +50,13 @@ Material unknown_material(ObjFile& obj) {
 }
 
 Material known_material(ObjFile& obj, const tinyobj::material_t& from) {
-    const std::string name = printable(from.name);
-    if (!from.diffuse_texname.empty()) {
-        warn(obj.scene, "material " + in_quotes(from.name), "map_Kd is not read, Kd stands alone");
-    }
+    const std::string name = printable(from.name), element = "material " + in_quotes(from.name);
+    if (!from.diffuse_texname.empty())
+        warn(obj.scene, element, "map_Kd is not read, Kd stands alone");
+    if (!from.emissive_texname.empty())
+        warn(obj.scene, element, "map_Ke is not read, Ke stands alone");
+    if (from.dissolve < 1)
+        warn(obj.scene, element, "d and Tr are not read, the material is opaque");
     return {name, {from.diffuse, from.diffuse + 3}, {from.emission, from.emission + 3}, false};
 }
 

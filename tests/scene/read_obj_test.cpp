@@ -158,6 +158,20 @@ TEST_F(ReadObj, WarnsOfATextureThatItDoesNotRead) {
                 ElementsAre("a.obj: material \"a\": map_Kd is not read, Kd stands alone"));
 }
 
+TEST_F(ReadObj, WarnsOfATextureOfEmissionAndOfTransparency) {
+    folder.write("a.mtl", "newmtl a\nmap_Ke x.png\nd 0.1\nnewmtl b\nTr 0.5\nnewmtl c\nd 1\nTr 0\n");
+
+    const Scene scene =
+        folder.read("a.obj", "mtllib a.mtl\n" + kSquare +
+                                 "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n");
+
+    EXPECT_THAT(
+        scene.warnings,
+        ElementsAre("a.obj: material \"a\": map_Ke is not read, Ke stands alone",
+                    "a.obj: material \"a\": d and Tr are not read, the material is opaque",
+                    "a.obj: material \"b\": d and Tr are not read, the material is opaque"));
+}
+
 TEST_F(ReadObj, TakesEveryLineEndAndContinuedLines) {
     const Scene scene = folder.read("a.OBJ",
                                     "# C:\\\r\nv 0 0 0\r\nv 1 0 0\rv 1 1 0\n\tv 0 \\\r\n1 0\n"
