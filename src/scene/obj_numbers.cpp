@@ -129,13 +129,22 @@ ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
     return numbers;
 }
 
-void check_mtl_numbers(const InputFile& file, const std::string& text) {
+std::string spell_out_colours(const InputFile& file, const std::string& text) {
+    std::string spelled;
     TextQuantum of_colours;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
+        spelled += line;
         const std::string_view keyword = next_word(line);
-        if (keyword == "Kd" || keyword == "Ke")
-            read_vector(InputLine{file, number}, line, of_colours);
+        if (keyword == "Kd" || keyword == "Ke") {
+            const std::size_t begin = spelled.size() - line.size();
+            const std::string_view first = next_word(line);
+            if (next_word(line).empty())
+                for (int i = 0; i < 2; ++i) spelled.append(1, ' ').append(first);
+            read_vector({file, number}, std::string_view(spelled).substr(begin), of_colours);
+        }
+        spelled += '\n';
     });
+    return spelled;
 }
 
 }  // namespace hemirad

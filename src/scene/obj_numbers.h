@@ -23,7 +23,8 @@ std::string unfold_lines(const std::string& bytes);
 
 ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text);
 
-/// Throws InputError where a Kd or Ke does not hold three numbers.
-void check_mtl_numbers(const InputFile& file, const std::string& text);
+/// The same text with three numbers in each Kd and Ke: one stands for all. Throws InputError where
+/// they are others.
+std::string spell_out_colours(const InputFile& file, const std::string& text);
 
 }  // namespace hemirad

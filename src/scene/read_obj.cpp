@@ -130,8 +130,7 @@ void note_textures(ObjFile& obj, const std::filesystem::path& library,
 
 void read_library(ObjFile& obj, const std::string& reference, const std::filesystem::path& path) {
     const InputFile file = read_input_file(path);
-    const std::string text = unfold_lines(file.bytes);
-    check_mtl_numbers(file, text);
+    const std::string text = spell_out_colours(file, unfold_lines(file.bytes));
 
     std::map<std::string, int> indices;
     std::vector<tinyobj::material_t> materials;

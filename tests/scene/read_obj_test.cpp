@@ -194,6 +194,15 @@ TEST_F(ReadObj, SkipsAByteOrderMark) {
     EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+TEST_F(ReadObj, TakesOneNumberOfAColourForAllThree) {
+    folder.write("a.mtl", "newmtl a\n Kd .5\nKe\t1\n");
+
+    const Scene scene = folder.read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n");
+
+    EXPECT_THAT(scene.materials.at(0).reflectance, ElementsAre(0.5, 0.5, 0.5));
+    EXPECT_THAT(scene.materials.at(0).emission, ElementsAre(1, 1, 1));
+}
+
 TEST_F(ReadObj, EscapesControlCharactersInNames) {
     const Scene scene =
         folder.read("a.obj", "o a\x1b[31mb\nusemtl c\x07\n" + kSquare + "f 1 2 3\n");
