@@ -120,6 +120,7 @@ ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
         const InputLine place{file, number};
         if (keyword == "v")
             numbers.positions.push_back(read_vector(place, line, numbers.quanta.emplace_back()));
+        if (keyword == "mtllib") numbers.libraries.emplace_back(line);
         if (keyword != "f") return;
         const std::size_t corners = check_face(place, line);
         squares += corners * corners;

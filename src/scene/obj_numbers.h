@@ -16,6 +16,7 @@ struct ObjNumbers {
     std::vector<glm::dvec3> positions;
     std::vector<TextQuantum> quanta;      ///< of each position
     std::vector<std::size_t> face_lines;  ///< line of each `f`, from 1
+    std::vector<std::string> libraries;   ///< what each `mtllib` names
 };
 
 /// Line ends become \n, lines that end in a backslash are joined; line numbers stay.

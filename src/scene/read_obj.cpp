@@ -6,7 +6,9 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "scene/input_file.h"
 #include "scene/obj_numbers.h"
@@ -146,29 +148,40 @@ void read_library(ObjFile& obj, const std::string& reference, const std::filesys
     }
 }
 
-/// tinyobjloader's hook for `mtllib`.
-class LibraryReader : public tinyobj::MaterialReader {
-  public:
-    explicit LibraryReader(ObjFile& obj) : obj_(obj) {}
-
-    bool operator()(const std::string& reference, std::vector<tinyobj::material_t>*,
-                    std::map<std::string, int>*, std::string*, std::string*) override {
-        const std::string element = "mtllib " + in_quotes(reference);
-        const auto path = resolve_reference(obj_.file, trimmed(reference));
-        if (!path) fail(obj_.file, element, "must be a file in the scene's folder");
-        if (!obj_.libraries.insert(*path).second) return false;
-        if (std::filesystem::exists(status_of(*path))) {
-            read_library(obj_, reference, *path);
-        } else {
-            warn(obj_.scene, element, "does not exist");
-        }
-        // Never "found": tinyobjloader would read only the first file of the line.
-        return false;
+/// A backslash makes the next character, a blank, a part of the name.
+std::vector<std::string> names_in(std::string_view line) {
+    std::vector<std::string> names(1);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const bool is_blank = line[i] == ' ' || line[i] == '\t';
+        if (line[i] == '\\' && i + 1 < line.size())
+            names.back() += line[++i];
+        else if (!is_blank)
+            names.back() += line[i];
+        else if (!names.back().empty())
+            names.emplace_back();
     }
+    if (names.back().empty()) names.pop_back();
+    return names;
+}
 
-  private:
-    ObjFile& obj_;
-};
+/// One file whose name has blanks, if there is such a file, or several.
+std::vector<std::string> libraries_in(const ObjFile& obj, const std::string& line) {
+    const std::string name = trimmed(line);
+    const auto path = resolve_reference(obj.file, name);
+    if (path && std::filesystem::is_regular_file(status_of(*path))) return {name};
+    return names_in(line);
+}
+
+void read_once(ObjFile& obj, const std::string& reference) {
+    const std::string element = "mtllib " + in_quotes(reference);
+    const auto path = resolve_reference(obj.file, reference);
+    if (!path) fail(obj.file, element, "must be a file in the scene's folder");
+    if (!obj.libraries.insert(*path).second) return;
+    if (std::filesystem::exists(status_of(*path)))
+        read_library(obj, reference, *path);
+    else
+        warn(obj.scene, element, "does not exist");
+}
 
 ObjFile& obj_of(void* user_data) { return *static_cast<ObjFile*>(user_data); }
 
@@ -211,10 +224,11 @@ Scene read_obj(const InputFile& file) {
     obj.scene.file = file.name;
     obj.scene.bands = {"R", "G", "B"};
 
-    LibraryReader library(obj);
+    for (const std::string& line : obj.numbers.libraries)
+        for (const std::string& name : libraries_in(obj, line)) read_once(obj, name);
     std::istringstream stream(text);
     std::string warning, error;
-    tinyobj::LoadObjWithCallback(stream, callbacks(), &obj, &library, &warning, &error);
+    tinyobj::LoadObjWithCallback(stream, callbacks(), &obj, nullptr, &warning, &error);
     if (!error.empty()) fail(file, "OBJ", printable(error));
     obj.scene.quantum = quantum_of(obj);
     obj.scene.positions = std::move(obj.numbers.positions);

@@ -194,6 +194,19 @@ TEST_F(ReadObj, SkipsAByteOrderMark) {
     EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+TEST_F(ReadObj, ReadsALibraryWhoseNameHasBlanks) {
+    folder.write("sub/my mat.mtl", "newmtl a\nKd 0.1 0.1 0.1\n");
+    folder.write("b.mtl", "newmtl b\nKd 0.2 0.2 0.2\n");
+
+    const Scene scene =
+        folder.read("a.obj", "mtllib sub/my mat.mtl \nmtllib sub/my\\ mat.mtl b.mtl\n" + kSquare +
+                                 "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+
+    EXPECT_THAT(scene.materials.at(0).reflectance, ElementsAre(0.1, 0.1, 0.1));
+    EXPECT_THAT(scene.materials.at(1).reflectance, ElementsAre(0.2, 0.2, 0.2));
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
 TEST_F(ReadObj, TakesOneNumberOfAColourForAllThree) {
     folder.write("a.mtl", "newmtl a\n Kd .5\nKe\t1\n");
 
@@ -289,6 +302,8 @@ INSTANTIATE_TEST_SUITE_P(
                "bad.obj: material \"m\": emission -3.00 is below 0"},
         BadObj{"EmissionInfinite", "newmtl m\nKe inf 0 0\n",
                "bad.mtl: line 2: \"inf\" is not finite"},
+        BadObj{"LibraryWithBlanksOutside", "mtllib my mat/../../a.mtl\n",
+               "bad.obj: mtllib \"mat/../../a.mtl\": must be a file in the scene's folder"},
         BadObj{"ReflectanceIsSpectralFile", "newmtl m\nKd spectral red.rfl\n",
                "bad.mtl: line 2: \"spectral\" is no number"}),
     [](const auto& test) { return test.param.name; });
