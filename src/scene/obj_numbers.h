@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/input_file.h"
@@ -19,7 +20,11 @@ struct ObjNumbers {
     std::vector<std::string> libraries;   ///< what each `mtllib` names
 };
 
-/// Line ends become \n, lines that end in a backslash are joined; line numbers stay.
+/// Without what begins with a blank and `#`.
+std::string_view without_comment(std::string_view line);
+
+/// Line ends become \n, lines that end in a backslash are joined; line numbers stay. Without byte
+/// order mark, blanks before lines and comments behind numbers.
 std::string unfold_lines(const std::string& bytes);
 
 ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text);

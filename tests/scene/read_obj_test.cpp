@@ -207,6 +207,45 @@ TEST_F(ReadObj, ReadsALibraryWhoseNameHasBlanks) {
     EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+TEST_F(ReadObj, EndsALineAtAComment) {
+    folder.write("a.mtl", "newmtl a # b\nKd 0.1 0.1 0.1 # grey\nKe 2\t#\n");
+
+    const Scene scene = folder.read(
+        "a.obj", "mtllib a.mtl # c\n" + kSquare + "f 1 2 3\t# 4 \\\nusemtl a\nf 1 2 3 #\n");
+
+    EXPECT_THAT(scene.faces.at(0).vertices, ElementsAre(0, 1, 2));
+    EXPECT_THAT(scene.faces.at(1).vertices, ElementsAre(0, 1, 2));
+    EXPECT_EQ(scene.materials.at(1).name, "a");
+    EXPECT_THAT(scene.materials.at(1).reflectance, ElementsAre(0.1, 0.1, 0.1));
+    EXPECT_THAT(scene.materials.at(1).emission, ElementsAre(2, 2, 2));
+}
+
+TEST_F(ReadObj, LooksForAMaterialWithoutItsComment) {
+    folder.write("a.mtl", "newmtl a\nKd 0.1 0.1 0.1\n");
+
+    const Scene scene = folder.read(
+        "a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a # wood\nf 1 2 3\nusemtl a\nf 1 2 3\n");
+
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].name, "a");
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+/// Names as 3ds Max gives them.
+TEST_F(ReadObj, KeepsNumbersInNames) {
+    folder.write("a.mtl",
+                 "newmtl Material #1\nKd 0.1 0.1 0.1\nnewmtl Material #2\nKd 0.2 0.2 0.2\n");
+
+    const Scene scene = folder.read(
+        "a.obj", "mtllib a.mtl\n" + kSquare +
+                     "o Box #1\nusemtl Material #2\nf 1 2 3\nusemtl Material #3\nf 1 2 3\n");
+
+    EXPECT_THAT(scene.objects, ElementsAre("Box #1"));
+    EXPECT_EQ(scene.materials.at(0).name, "Material #2");
+    EXPECT_THAT(scene.materials.at(0).reflectance, ElementsAre(0.2, 0.2, 0.2));
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"Material #3\": is not defined")));
+}
+
 TEST_F(ReadObj, TakesOneNumberOfAColourForAllThree) {
     folder.write("a.mtl", "newmtl a\n Kd .5\nKe\t1\n");
 
@@ -302,6 +341,8 @@ INSTANTIATE_TEST_SUITE_P(
                "bad.obj: material \"m\": emission -3.00 is below 0"},
         BadObj{"EmissionInfinite", "newmtl m\nKe inf 0 0\n",
                "bad.mtl: line 2: \"inf\" is not finite"},
+        BadObj{"ReflectanceOfTwoNumbers", "newmtl m\nKd 0.5 0.5 # 1\n",
+               "bad.mtl: line 2: a number is missing"},
         BadObj{"LibraryWithBlanksOutside", "mtllib my mat/../../a.mtl\n",
                "bad.obj: mtllib \"mat/../../a.mtl\": must be a file in the scene's folder"},
         BadObj{"ReflectanceIsSpectralFile", "newmtl m\nKd spectral red.rfl\n",
