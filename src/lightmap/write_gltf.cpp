@@ -16,6 +16,7 @@
 #include "lightmap/base64.h"
 #include "lightmap/tone.h"
 #include "scene/bounds.h"
+#include "scene/input_file.h"
 
 namespace hemirad {
 namespace {
@@ -51,11 +52,18 @@ struct LitMaterial {
 using Primitives = std::map<LitMaterial, Primitive>;
 
 /// Far from the origin floats would be too coarse; a node takes coordinates there in double.
-glm::dvec3 root_of(const Scene& scene) {
+glm::dvec3 root_of(const Bounds& bounds) {
     constexpr double kNear = 4;  // extents: two bits of a float's 24
-    const Bounds bounds = bounds_of(scene.positions);
     const glm::dvec3 middle = bounds.middle();
     return glm::length(middle) < kNear * bounds.diagonal() ? glm::dvec3(0) : middle;
+}
+
+void check_range(const Bounds& bounds, const glm::dvec3& root, const std::string& name) {
+    const glm::dvec3 most = glm::max(glm::abs(bounds.least - root), glm::abs(bounds.most - root));
+    const double largest = std::max({most.x, most.y, most.z});
+    if (largest > double{std::numeric_limits<float>::max()})
+        throw OutputError(name + ": a coordinate of " + number(largest) +
+                          " m is beyond glTF's floats");
 }
 
 glm::dvec3 normal_of(const Scene& scene, const std::array<std::uint32_t, 3>& vertices) {
@@ -326,7 +334,9 @@ void write_gltf(const std::filesystem::path& path, const Scene& scene, const Mes
                 const std::vector<Camera>& cameras, const std::vector<UvTriangle>& triangles,
                 const std::vector<LightmapImage>& images, const std::filesystem::path& exr) {
     Buffer buffer;
-    const glm::dvec3 root = root_of(scene);
+    const Bounds bounds = bounds_of(scene);
+    const glm::dvec3 root = root_of(bounds);
+    check_range(bounds, root, path.string());
     Json gltf{{"asset", {{"version", "2.0"}, {"generator", "hemirad"}}}};
     gltf["asset"]["extras"]["hemirad"] = {{"exr", exr.generic_string()},
                                           {"atlases", images.size()}};

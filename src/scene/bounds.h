@@ -5,6 +5,8 @@
 #include <glm/vec3.hpp>
 #include <limits>
 
+#include "scene/scene.h"
+
 namespace hemirad {
 
 /// A box along the axes; of no points, least is above most.
@@ -29,6 +31,14 @@ template <class Points>
 Bounds bounds_of(const Points& points) {
     Bounds bounds;
     for (const auto& point : points) bounds.take_in(glm::dvec3(point));
+    return bounds;
+}
+
+/// Of the positions that faces use: files hold others, too.
+inline Bounds bounds_of(const Scene& scene) {
+    Bounds bounds;
+    for (const Face& face : scene.faces)
+        for (const std::uint32_t v : face.vertices) bounds.take_in(scene.positions[v]);
     return bounds;
 }
 

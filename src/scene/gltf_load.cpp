@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -148,34 +149,40 @@ struct Folder {
 /// Buffers, and images, may share a file, and each holds it whole.
 constexpr std::uint64_t kMostReadAgain = std::uint64_t{1} << 28;
 
-/// What tinygltf may read: files in the scene's folder. It also looks in the working directory and
-/// decodes %-escapes after check_gltf has seen the reference.
-bool is_in_folder(const std::string& path, const std::filesystem::path& folder) {
+/// What tinygltf may read: files in the scene's folder, or nothing. It also looks in the working
+/// directory and decodes %-escapes after check_gltf has seen the reference. The kernel would take
+/// `link/..` for the folder above where the link leads: so it gets no such path.
+std::optional<std::filesystem::path> place_in(const std::filesystem::path& folder,
+                                              const std::string& path) {
     const auto relative = std::filesystem::path(path).lexically_normal().lexically_relative(
         folder.lexically_normal());
-    return !relative.empty() && *relative.begin() != "..";
+    if (relative.empty() || *relative.begin() == "..") return {};
+    const auto place = folder / relative;
+    if (!std::filesystem::is_regular_file(status_of(place))) return {};
+    return place;
 }
 
 bool may_read(const std::string& path, void* folder) {
-    return is_in_folder(path, static_cast<const Folder*>(folder)->path) &&
-           std::filesystem::is_regular_file(status_of(path));
+    return place_in(static_cast<const Folder*>(folder)->path, path).has_value();
 }
 
-bool is_read_rarely(Folder& folder, const std::filesystem::path& path) {
-    if (folder.read.insert(path.lexically_normal()).second) return true;
-    folder.read_again += std::filesystem::file_size(path);
+bool is_read_rarely(Folder& folder, const std::filesystem::path& place) {
+    if (folder.read.insert(place).second) return true;
+    folder.read_again += std::filesystem::file_size(place);
     return folder.read_again <= kMostReadAgain;
 }
 
 bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
-                void* folder) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!may_read(path, folder) || !stream ||
-        !is_read_rarely(*static_cast<Folder*>(folder), path)) {
+                void* of_scene) {
+    Folder& folder = *static_cast<Folder*>(of_scene);
+    const auto place = place_in(folder.path, path);
+    std::ifstream stream;
+    if (place) stream.open(*place, std::ios::binary);
+    if (!stream.is_open() || !is_read_rarely(folder, *place)) {
         *error += "cannot be read";
         return false;
     }
-    bytes->resize(std::filesystem::file_size(path));
+    bytes->resize(std::filesystem::file_size(*place));
     stream.read(reinterpret_cast<char*>(bytes->data()),
                 static_cast<std::streamsize>(bytes->size()));
     bytes->resize(static_cast<std::size_t>(stream.gcount()));

@@ -1,10 +1,10 @@
 #include "scene/obj_numbers.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <string_view>
 
 #include "scene/input_line.h"
-#include "scene/quantum.h"
 
 namespace hemirad {
 namespace {
@@ -15,6 +15,8 @@ constexpr std::string_view kBlanks = " \t";
 /// for the largest, and for all faces together.
 constexpr std::size_t kMostCorners = 10'000;
 constexpr std::size_t kMostSquares = 3 * kMostCorners * kMostCorners, kSquaresAByte = 100;
+
+bool is_blank(char c) { return kBlanks.find(c) != kBlanks.npos; }
 
 std::string_view next_word(std::string_view& line) {
     const auto begin = line.find_first_not_of(kBlanks);
@@ -61,9 +63,15 @@ void check_corner(const InputLine& place, std::string_view corner) {
 }
 
 /// A comment may end in a backslash (a folder of Windows) without swallowing the next line.
-bool is_continued(std::string_view line) {
-    const auto first = line.find_first_not_of(kBlanks);
-    return !line.empty() && line.back() == '\\' && line[first] != '#';
+bool is_continued(std::string_view line) { return line.ends_with('\\') && line.front() != '#'; }
+
+/// In other lines what follows may be part of a name, `Material #25`, or is not read.
+bool begins_comment(std::string_view line, char next) {
+    constexpr std::array<std::string_view, 3> kOfNumbers{"f", "Kd", "Ke"};
+    return next == '#' && !line.empty() && is_blank(line.back()) &&
+           std::ranges::any_of(kOfNumbers, [&](std::string_view keyword) {
+               return line.starts_with(keyword) && is_blank(line[keyword.size()]);
+           });
 }
 
 /// Returns how many corners it has.
@@ -91,16 +99,29 @@ void check_squares(const InputFile& file, std::size_t squares, std::size_t bytes
 
 }  // namespace
 
+std::string_view without_comment(std::string_view line) {
+    for (auto at = line.find('#'); at != line.npos; at = line.find('#', at + 1))
+        if (at > 0 && is_blank(line[at - 1])) return line.substr(0, at);
+    return line;
+}
+
 std::string unfold_lines(const std::string& bytes) {
     std::string text;
     text.reserve(bytes.size() + 1);
     std::size_t owed = 0, line_begin = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bool in_comment = false;
+    constexpr std::string_view kMark = "\xef\xbb\xbf";  // of byte order; some editors put it there
+    for (std::size_t i = bytes.starts_with(kMark) ? kMark.size() : 0; i < bytes.size(); ++i) {
         const bool is_pair = bytes[i] == '\r' && i + 1 < bytes.size() && bytes[i + 1] == '\n';
         if (is_pair) continue;
+        const auto line = std::string_view(text).substr(line_begin);
         if (bytes[i] != '\n' && bytes[i] != '\r') {
-            text += bytes[i];
-        } else if (is_continued(std::string_view(text).substr(line_begin))) {
+            in_comment = in_comment || begins_comment(line, bytes[i]);
+            const bool leads = line.empty() && is_blank(bytes[i]);
+            if (!in_comment && !leads) text += bytes[i];
+            continue;
+        }
+        if (!in_comment && is_continued(line)) {
             text.back() = ' ';
             ++owed;
         } else {
@@ -108,35 +129,45 @@ std::string unfold_lines(const std::string& bytes) {
             owed = 0;
             line_begin = text.size();
         }
+        in_comment = false;
     }
     return text;
 }
 
 ObjNumbers read_obj_numbers(const InputFile& file, const std::string& text) {
     ObjNumbers numbers;
-    TextQuantum quantum;
     std::size_t squares = 0;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
         const std::string_view keyword = next_word(line);
         const InputLine place{file, number};
-        if (keyword == "v") numbers.positions.push_back(read_vector(place, line, quantum));
+        if (keyword == "v")
+            numbers.positions.push_back(read_vector(place, line, numbers.quanta.emplace_back()));
+        if (keyword == "mtllib") numbers.libraries.emplace_back(line);
         if (keyword != "f") return;
         const std::size_t corners = check_face(place, line);
         squares += corners * corners;
         numbers.face_lines.push_back(number);
     });
     check_squares(file, squares, text.size());
-    numbers.quantum = quantum.value();
     return numbers;
 }
 
-void check_mtl_numbers(const InputFile& file, const std::string& text) {
+std::string spell_out_colours(const InputFile& file, const std::string& text) {
+    std::string spelled;
     TextQuantum of_colours;
     for_each_line(text, [&](std::size_t number, std::string_view line) {
+        spelled += line;
         const std::string_view keyword = next_word(line);
-        if (keyword == "Kd" || keyword == "Ke")
-            read_vector(InputLine{file, number}, line, of_colours);
+        if (keyword == "Kd" || keyword == "Ke") {
+            const std::size_t begin = spelled.size() - line.size();
+            const std::string_view first = next_word(line);
+            if (next_word(line).empty())
+                for (int i = 0; i < 2; ++i) spelled.append(1, ' ').append(first);
+            read_vector({file, number}, std::string_view(spelled).substr(begin), of_colours);
+        }
+        spelled += '\n';
     });
+    return spelled;
 }
 
 }  // namespace hemirad

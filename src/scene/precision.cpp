@@ -3,28 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 
 #include "errors.h"
+#include "scene/bounds.h"
 #include "scene/input_file.h"
 
 namespace hemirad::meshing {
 namespace {
 
-/// Of the positions that faces use: files hold others, too.
+/// Of the positions that faces use.
 struct Reach {
     double largest = 0;    ///< |coordinate|
     double half_side = 0;  ///< half of the longest side of the bounding box
 };
 
 Reach reach_of(const Scene& scene) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    glm::dvec3 low(kInfinity), high(-kInfinity);
-    for (const Face& face : scene.faces)
-        for (const std::uint32_t v : face.vertices) {
-            low = glm::min(low, scene.positions[v]);
-            high = glm::max(high, scene.positions[v]);
-        }
+    const auto [low, high] = bounds_of(scene);
     if (!(low.x <= high.x)) return {};
     const glm::dvec3 largest = glm::max(glm::abs(low), glm::abs(high));
     const glm::dvec3 half = 0.5 * high - 0.5 * low;

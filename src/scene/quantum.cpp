@@ -44,4 +44,11 @@ void TextQuantum::add(std::string_view word, double value) {
     any_in_full_ = any_in_full_ || is_float_in_full(value);
 }
 
+void TextQuantum::add(const TextQuantum& other) {
+    of_floats_ = std::max(of_floats_, other.of_floats_);
+    of_decimals_ = std::max(of_decimals_, other.of_decimals_);
+    all_floats_ = all_floats_ && other.all_floats_;
+    any_in_full_ = any_in_full_ || other.any_in_full_;
+}
+
 }  // namespace hemirad

@@ -19,6 +19,7 @@ bool is_float_in_full(double value);
 class TextQuantum {
   public:
     void add(std::string_view word, double value);
+    void add(const TextQuantum& other);
     double value() const { return all_floats_ && any_in_full_ ? of_floats_ : of_decimals_; }
 
   private:

@@ -30,6 +30,7 @@ struct Builder {
     std::optional<std::uint32_t> default_material = {};
     std::map<int, std::vector<std::size_t>> primitives = {};  ///< of meshes, those with faces
     std::set<std::string> told = {};                          ///< what is not read
+    std::vector<double> quanta = {};  ///< m, of each of the scene's positions
 };
 
 /// Of what is not read, with the first place in the file that has it.
@@ -197,11 +198,7 @@ VertexRange add_positions(Builder& builder, const PlacedNode& node, int accessor
     if (range.first + range.count > std::numeric_limits<std::uint32_t>::max()) {
         fail(builder.gltf.file, node_path(node.node), "the scene has too many vertices");
     }
-    double largest = 0;
-    for (const double value : values) largest = std::max(largest, std::abs(value));
-    builder.scene.quantum =
-        std::max(builder.scene.quantum,
-                 node.quantum + largest_growth(node.world_from_node) * half_float_ulp(largest));
+    const double growth = largest_growth(node.world_from_node);
     for (std::size_t i = 0; i < range.count; ++i) {
         const glm::dvec4 local(glm::make_vec3(&values[3 * i]), 1);
         const glm::dvec3 world(node.world_from_node * local);
@@ -210,6 +207,8 @@ VertexRange add_positions(Builder& builder, const PlacedNode& node, int accessor
                  "vertex " + std::to_string(i) + " is not finite");
         }
         positions.push_back(world);
+        const double largest = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
+        builder.quanta.push_back(node.quantum + growth * half_float_ulp(largest));
     }
     return range;
 }
@@ -450,6 +449,14 @@ void warn_of_lights(Builder& builder, const std::vector<PlacedNode>& nodes) {
              (count == 1 ? ") is" : ") are") + " not taken: light comes from emissive faces");
 }
 
+/// Of the positions that faces use: buffers hold others, too.
+double quantum_of(const Builder& builder) {
+    double quantum = 0;
+    for (const Face& face : builder.scene.faces)
+        for (const std::uint32_t v : face.vertices) quantum = std::max(quantum, builder.quanta[v]);
+    return quantum;
+}
+
 }  // namespace
 
 Scene read_gltf(const InputFile& file) {
@@ -461,6 +468,7 @@ Scene read_gltf(const InputFile& file) {
     const auto nodes = place_nodes(gltf);
     check_placed(gltf, nodes);
     for (const PlacedNode& node : nodes) add_mesh(builder, node);
+    builder.scene.quantum = quantum_of(builder);
     warn_of_lights(builder, nodes);
     return std::move(builder.scene);
 }

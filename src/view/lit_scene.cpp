@@ -24,9 +24,10 @@ fs::path exr_of(const fs::path& gltf, const Json& json) {
     if (!json.contains(at) || !json[at].is_string() || json[at] == "")
         fail(gltf, "names no lightmap in asset.extras.hemirad.exr; --lightmap does");
     const auto name = json[at].get<std::string>();
-    // A reference in glTF would be a URI; this is a file's name.
-    const fs::path relative(name);
-    if (relative.is_absolute() || *relative.lexically_normal().begin() == "..")
+    // A reference in glTF would be a URI; this is a file's name. Normal, so that no link in it is
+    // left upwards.
+    const fs::path relative = fs::path(name).lexically_normal();
+    if (relative.is_absolute() || *relative.begin() == "..")
         fail(gltf, "its lightmap \"" + printable(name) +
                        "\" is not in its folder; --lightmap says which to take");
     return gltf.parent_path() / relative;

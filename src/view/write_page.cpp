@@ -58,7 +58,7 @@ struct Ball {
 };
 
 Ball around(const Scene& scene) {
-    const Bounds bounds = bounds_of(scene.positions);
+    const Bounds bounds = bounds_of(scene);
     return {bounds.middle(), bounds.diagonal() / 2};
 }
 

@@ -6,8 +6,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "errors.h"
 #include "lightmap/rasterize.h"
 #include "lightmap/support.h"
+#include "scene/bounds.h"
 #include "scene/read_scene.h"
 
 #define STB_IMAGE_STATIC
@@ -168,6 +170,35 @@ TEST_F(WriteGltf, CamerasComeBackAsTheyWere) {
     EXPECT_LT(glm::distance(camera.eye, {1, 2, 3}), 1e-12);
     EXPECT_LT(glm::distance(camera.forward, {0, 0.6, -0.8}), 1e-12);
     EXPECT_LT(glm::distance(camera.up, {0, 0.8, 0.6}), 1e-12);
+}
+
+TEST_F(WriteGltf, VerticesThatNoFaceUsesRoundNothing) {
+    const glm::dvec3 shift(4e6 + 0.123, -5e5 - 0.123, 1e7 + 0.123);
+    Scene scene = quad(shift);
+    scene.quantum = 1e-6;
+    scene.positions.emplace_back(0);
+
+    const Scene read = round_trip(lit(scene));
+
+    const Bounds bounds = bounds_of(read.positions);
+    EXPECT_LT(glm::distance(bounds.least, shift), 1e-6);
+    EXPECT_LT(glm::distance(bounds.most, shift + glm::dvec3(2, 1, 0)), 1e-6);
+}
+
+TEST_F(WriteGltf, RefusesWhatFloatsCannotHold) {
+    Scene scene = quad();
+    for (glm::dvec3& p : scene.positions) p *= 1e40;
+    Lit a = lit(quad());
+    a.scene = scene;
+
+    try {
+        round_trip(a);
+        FAIL() << "written";
+    } catch (const OutputError& error) {
+        EXPECT_EQ(error.what(),
+                  file("a.glb").string() + ": a coordinate of 2e+40 m is beyond glTF's floats");
+    }
+    EXPECT_FALSE(std::filesystem::exists(file("a.glb")));
 }
 
 TEST_F(WriteGltf, BandsOfItsOwnComeBack) {

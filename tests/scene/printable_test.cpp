@@ -60,6 +60,23 @@ TEST(CsvField, LeavesNothingForASpreadsheetToCompute) {
     EXPECT_EQ(csv_field("+HYPERLINK(A1) (back)"), "'+HYPERLINK(A1) (back)");
 }
 
+TEST(CsvField, LeavesNothingToComputeBehindASemicolonOrTab) {
+    EXPECT_EQ(csv_field("a;=HYPERLINK(\"x\")"), "\"a;'=HYPERLINK(\"\"x\"\")\"");
+    EXPECT_EQ(csv_field("a;;@SUM(A1);b\t=1"), "a;;'@SUM(A1);b\t'=1");
+    EXPECT_EQ(csv_field("=1;+cmd|x"), "'=1;'+cmd|x");
+    EXPECT_EQ(csv_field("a;-1+2"), "a;'-1+2");
+    EXPECT_EQ(csv_field("a;b=1; c;"), "a;b=1; c;");
+}
+
+TEST(CsvField, LeavesNothingToComputeInFullWidth) {
+    EXPECT_EQ(csv_field("\uff1dcmd|x"), "'\uff1dcmd|x");
+    EXPECT_EQ(csv_field("\uff20SUM"), "'\uff20SUM");
+    EXPECT_EQ(csv_field("\uff0bcmd|x"), "'\uff0bcmd|x");
+    EXPECT_EQ(csv_field("a;\uff0d1"), "a;'\uff0d1");
+    EXPECT_EQ(csv_field("\uff0dx"), "\uff0dx");
+    EXPECT_EQ(csv_field("\uff0c\uff1e\uff1f"), "\uff0c\uff1e\uff1f");
+}
+
 TEST(CsvField, LeavesDirectionsAsTheyAre) {
     EXPECT_EQ(csv_field("+x"), "+x");
     EXPECT_EQ(csv_field("+x (back)"), "+x (back)");

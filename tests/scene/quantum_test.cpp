@@ -46,6 +46,20 @@ TEST_F(Quantum, OfFloatsWrittenInFullIsTheirs) {
               1e-13);
 }
 
+TEST_F(Quantum, IsThatOfVerticesThatFacesUse) {
+    const std::string used = "v 0 0 0\nv 1 0 0\nv 0 .5 0\n";
+    EXPECT_DOUBLE_EQ(of_obj(used + "v 1000 0 0\n"), 0x1p-24);
+    EXPECT_DOUBLE_EQ(of_obj("v 4.0000000000000 0 0\nv 0.100000001490116119384765625 0 0\n"
+                            "v 0 0.300000011920928955078125 0\nv 0.1 0 0\n"),
+                     4 * 0x1p-24);
+    Json gltf = triangle_gltf();
+    add_positions(gltf, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1000, 0, 0});
+    add_accessor(gltf, std::vector<std::uint32_t>{0, 1, 2}, "SCALAR", 5125, 3);
+    gltf["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 1;
+    gltf["meshes"][0]["primitives"][0]["indices"] = 2;
+    EXPECT_DOUBLE_EQ(folder.read(gltf).quantum, 0x1p-24);
+}
+
 TEST_F(Quantum, OfGltfIsTheLocalFloatsTimesTheScale) {
     EXPECT_DOUBLE_EQ(of_gltf({}), 0x1p-24);
     EXPECT_DOUBLE_EQ(of_gltf({{"scale", {1e-3, 1e-3, 1e-3}}}), 1e-3 * 0x1p-24);

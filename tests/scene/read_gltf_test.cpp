@@ -967,6 +967,21 @@ TEST_F(ReadGltf, FollowsLinksWithinTheFolder) {
     EXPECT_EQ(folder.error_of(gltf), "");
 }
 
+TEST_F(ReadGltf, LeavesItsFolderByNoLinkEither) {
+    Json gltf = triangle_gltf();
+    gltf["buffers"][0]["uri"] = "link/../a.bin";
+    folder.write("out/a.bin", std::string(36, '\0'));
+    folder.write("out/deep/b.bin", "");
+    folder.write("scene/room.gltf", gltf.dump());
+    std::filesystem::create_directory_symlink("../out/deep", folder.path() / "scene/link");
+
+    EXPECT_NE(folder.error_of(folder.path() / "scene/room.gltf"), "");
+
+    folder.write("out/room.gltf", gltf.dump());
+    EXPECT_EQ(folder.error_of(folder.path() / "scene/link/../room.gltf"), "")
+        << "what the user names is where the kernel finds it";
+}
+
 TEST_F(ReadGltf, TellsOnceOfAPrimitiveWithoutFacesHoweverManyNodesShowIt) {
     Json gltf = triangle_gltf();
     auto& primitives = gltf["meshes"][0]["primitives"];

@@ -158,6 +158,20 @@ TEST_F(ReadObj, WarnsOfATextureThatItDoesNotRead) {
                 ElementsAre("a.obj: material \"a\": map_Kd is not read, Kd stands alone"));
 }
 
+TEST_F(ReadObj, WarnsOfATextureOfEmissionAndOfTransparency) {
+    folder.write("a.mtl", "newmtl a\nmap_Ke x.png\nd 0.1\nnewmtl b\nTr 0.5\nnewmtl c\nd 1\nTr 0\n");
+
+    const Scene scene =
+        folder.read("a.obj", "mtllib a.mtl\n" + kSquare +
+                                 "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n");
+
+    EXPECT_THAT(
+        scene.warnings,
+        ElementsAre("a.obj: material \"a\": map_Ke is not read, Ke stands alone",
+                    "a.obj: material \"a\": d and Tr are not read, the material is opaque",
+                    "a.obj: material \"b\": d and Tr are not read, the material is opaque"));
+}
+
 TEST_F(ReadObj, TakesEveryLineEndAndContinuedLines) {
     const Scene scene = folder.read("a.OBJ",
                                     "# C:\\\r\nv 0 0 0\r\nv 1 0 0\rv 1 1 0\n\tv 0 \\\r\n1 0\n"
@@ -165,6 +179,80 @@ TEST_F(ReadObj, TakesEveryLineEndAndContinuedLines) {
 
     EXPECT_EQ(scene.positions.size(), 4u);
     EXPECT_THAT(scene.faces[0].vertices, ElementsAre(0, 1, 2, 3));
+}
+
+TEST_F(ReadObj, SkipsAByteOrderMark) {
+    const std::string mark = "\xef\xbb\xbf";
+    folder.write("a.mtl", mark + "newmtl a\nKd 0.1 0.1 0.1\n");
+
+    const Scene scene =
+        folder.read("a.obj", mark + "v 9 9 9\nmtllib a.mtl\n" + kSquare + "usemtl a\nf 2 3 4\n");
+
+    EXPECT_EQ(scene.positions.size(), 5u);
+    EXPECT_EQ(scene.positions[scene.faces.at(0).vertices[0]], glm::dvec3(0, 0, 0));
+    EXPECT_EQ(scene.materials.at(0).name, "a");
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(ReadObj, ReadsALibraryWhoseNameHasBlanks) {
+    folder.write("sub/my mat.mtl", "newmtl a\nKd 0.1 0.1 0.1\n");
+    folder.write("b.mtl", "newmtl b\nKd 0.2 0.2 0.2\n");
+
+    const Scene scene =
+        folder.read("a.obj", "mtllib sub/my mat.mtl \nmtllib sub/my\\ mat.mtl b.mtl\n" + kSquare +
+                                 "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+
+    EXPECT_THAT(scene.materials.at(0).reflectance, ElementsAre(0.1, 0.1, 0.1));
+    EXPECT_THAT(scene.materials.at(1).reflectance, ElementsAre(0.2, 0.2, 0.2));
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST_F(ReadObj, EndsALineAtAComment) {
+    folder.write("a.mtl", "newmtl a # b\nKd 0.1 0.1 0.1 # grey\nKe 2\t#\n");
+
+    const Scene scene = folder.read(
+        "a.obj", "mtllib a.mtl # c\n" + kSquare + "f 1 2 3\t# 4 \\\nusemtl a\nf 1 2 3 #\n");
+
+    EXPECT_THAT(scene.faces.at(0).vertices, ElementsAre(0, 1, 2));
+    EXPECT_THAT(scene.faces.at(1).vertices, ElementsAre(0, 1, 2));
+    EXPECT_EQ(scene.materials.at(1).name, "a");
+    EXPECT_THAT(scene.materials.at(1).reflectance, ElementsAre(0.1, 0.1, 0.1));
+    EXPECT_THAT(scene.materials.at(1).emission, ElementsAre(2, 2, 2));
+}
+
+TEST_F(ReadObj, LooksForAMaterialWithoutItsComment) {
+    folder.write("a.mtl", "newmtl a\nKd 0.1 0.1 0.1\n");
+
+    const Scene scene = folder.read(
+        "a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a # wood\nf 1 2 3\nusemtl a\nf 1 2 3\n");
+
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].name, "a");
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+/// Names as 3ds Max gives them.
+TEST_F(ReadObj, KeepsNumbersInNames) {
+    folder.write("a.mtl",
+                 "newmtl Material #1\nKd 0.1 0.1 0.1\nnewmtl Material #2\nKd 0.2 0.2 0.2\n");
+
+    const Scene scene = folder.read(
+        "a.obj", "mtllib a.mtl\n" + kSquare +
+                     "o Box #1\nusemtl Material #2\nf 1 2 3\nusemtl Material #3\nf 1 2 3\n");
+
+    EXPECT_THAT(scene.objects, ElementsAre("Box #1"));
+    EXPECT_EQ(scene.materials.at(0).name, "Material #2");
+    EXPECT_THAT(scene.materials.at(0).reflectance, ElementsAre(0.2, 0.2, 0.2));
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("\"Material #3\": is not defined")));
+}
+
+TEST_F(ReadObj, TakesOneNumberOfAColourForAllThree) {
+    folder.write("a.mtl", "newmtl a\n Kd .5\nKe\t1\n");
+
+    const Scene scene = folder.read("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n");
+
+    EXPECT_THAT(scene.materials.at(0).reflectance, ElementsAre(0.5, 0.5, 0.5));
+    EXPECT_THAT(scene.materials.at(0).emission, ElementsAre(1, 1, 1));
 }
 
 TEST_F(ReadObj, EscapesControlCharactersInNames) {
@@ -253,6 +341,10 @@ INSTANTIATE_TEST_SUITE_P(
                "bad.obj: material \"m\": emission -3.00 is below 0"},
         BadObj{"EmissionInfinite", "newmtl m\nKe inf 0 0\n",
                "bad.mtl: line 2: \"inf\" is not finite"},
+        BadObj{"ReflectanceOfTwoNumbers", "newmtl m\nKd 0.5 0.5 # 1\n",
+               "bad.mtl: line 2: a number is missing"},
+        BadObj{"LibraryWithBlanksOutside", "mtllib my mat/../../a.mtl\n",
+               "bad.obj: mtllib \"mat/../../a.mtl\": must be a file in the scene's folder"},
         BadObj{"ReflectanceIsSpectralFile", "newmtl m\nKd spectral red.rfl\n",
                "bad.mtl: line 2: \"spectral\" is no number"}),
     [](const auto& test) { return test.param.name; });

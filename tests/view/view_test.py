@@ -122,6 +122,15 @@ class View(Solved):
         self.assert_refused(self.hemirad("view", "box.glb"), "is not in its folder")
         self.page("--lightmap", "box.exr")
 
+    def test_no_link_leads_to_a_lightmap_above_where_it_leads(self):
+        (self.folder / "out/deep").mkdir(parents=True)
+        (self.folder / "scene").mkdir()
+        (self.folder / "scene/l").symlink_to("../out/deep")
+        shutil.copy(self.folder / "box.exr", self.folder / "out/ab")
+        glb = (self.folder / "box.glb").read_bytes()
+        (self.folder / "scene/box.glb").write_bytes(glb.replace(b'"box.exr"', b'"l/../ab"'))
+        self.assert_refused(self.hemirad("view", "scene/box.glb"), "ab: no such file")
+
     def test_lightmaps_that_are_none_are_refused(self):
         exr = (self.folder / "box.exr").read_bytes()
         for bad in (b"", b"no picture", exr[:200], exr[:-500]):
