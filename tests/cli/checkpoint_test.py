@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import scenes
 from cli_test import LONG, CommandLine
 from exr import Exr
 
+KERNELS = pathlib.Path(__file__).resolve().parents[2] / "kernels"
 KEPT = ("shots", "ledger", "closure", "unshot_fraction", "lights", "error", "settings", "outputs")
 
 
@@ -74,6 +76,13 @@ class Resume(Checkpoints):
                                     "100"))
         self.assertEqual(self.bytes_of("b.exr"), self.bytes_of("a.exr"))
 
+    def test_goes_on_wherever_the_same_kernels_lie(self):
+        shutil.copytree(KERNELS, self.folder / "kk")
+        self.stop_early("--kernels", "kk")
+        for folder in (("--kernels", "./kk"), ("--kernels", str(self.folder / "kk")), ()):
+            with self.subTest(folder):
+                self.assert_done(self.solve("--resume", "c.ckpt", "-o", "a.exr", *folder))
+
     def test_is_none_where_the_time_is_over_before_the_second_split(self):
         """Less than a solve takes to begin, more than it then takes to end."""
         self.write("scene.obj", scenes.obj(faces=scenes.FACES + "usemtl white\nf 1 2 6 5\n"))
@@ -132,6 +141,13 @@ class BadCheckpoints(Checkpoints):
                 self.assertNotEqual(before, self.bytes_of(name))
                 self.assert_not_resumed(says)
             self.write(name, before)
+
+    def test_of_other_kernels(self):
+        shutil.copytree(KERNELS, self.folder / "kk")
+        self.stop_early("--kernels", "kk")
+        kernel = self.folder / "kk" / "choose_shooter.cl"
+        kernel.write_text(kernel.read_text(encoding="ascii") + "// and more\n", encoding="ascii")
+        self.assert_not_resumed("made with other kernels", "--kernels", "kk")
 
     def test_torn(self):
         self.stop_early()
