@@ -25,10 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The same for every way to write a file's name; weakly_canonical alone leaves "a" as it is where
-/// there is no such file yet. A folder that nobody may look into has its own fault told later.
+/// there is no such file yet, a link as well. A folder that nobody may look into has its own fault
+/// told later.
 fs::path place_of(const fs::path& file) {
     std::error_code fault;
-    const fs::path absolute = fs::absolute(file);
+    const fs::path absolute = fs::absolute(link_target(file));
     const fs::path place = fs::weakly_canonical(absolute, fault);
     return fault ? absolute.lexically_normal() : place;
 }

@@ -176,16 +176,6 @@ void fill(const fs::path& file, const fs::path& path,
     if (!stream) fail(path, errno);
 }
 
-/// The file itself, be it there or not, where `path` is a symbolic link: a rename would replace the
-/// link.
-fs::path resolved(fs::path path) {
-    constexpr int kMostLinks = 40;  // Linux's path_resolution(7)
-    std::error_code fault;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(path, fault); ++i)
-        path = path.parent_path() / fs::read_symlink(path, fault);
-    return path;
-}
-
 /// What a rename would not notice: it replaces read-only files as well.
 void require_replaceable(const fs::path& path) {
     std::error_code ignored;
@@ -196,6 +186,14 @@ void require_replaceable(const fs::path& path) {
 
 }  // namespace
 
+fs::path link_target(fs::path path) {
+    constexpr int kMostLinks = 40;  // Linux's path_resolution(7)
+    std::error_code fault;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(path, fault); ++i)
+        path = path.parent_path() / fs::read_symlink(path, fault);
+    return path;
+}
+
 bool is_device_or_pipe(const fs::path& path) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
@@ -205,7 +203,7 @@ bool is_device_or_pipe(const fs::path& path) {
 void write_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
     require_replaceable(path);
     if (is_device_or_pipe(path)) return fill(path, path, write);
-    TemporaryFile temporary(resolved(path));
+    TemporaryFile temporary(link_target(path));
     if (!temporary.is_open()) fail(path, errno);
     fill(temporary.path(), path, write);
     if (!temporary.take_the_targets_place()) fail(path, errno);
@@ -214,7 +212,7 @@ void write_atomically(const fs::path& path, const std::function<void(std::ostrea
 void check_writable(const fs::path& path) {
     require_replaceable(path);
     if (is_device_or_pipe(path)) return;
-    const fs::path target = resolved(path);
+    const fs::path target = link_target(path);
     const TemporaryFile temporary(target);
     if (!temporary.is_open()) fail(path, errno);
     remove_what_was_left(folder_of(target));

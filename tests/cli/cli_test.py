@@ -325,6 +325,14 @@ class BadOutputs(CommandLine):
         self.assert_refused(result, "hemirad: ./a.json: ")
         self.assertEqual("older", (self.folder / "a.txt").read_text())
 
+    def test_link_to_another_output_that_is_not_there_yet(self):
+        (self.folder / "b.csv").symlink_to("a.exr")
+        for link in ("b.csv", "c.csv"):
+            if link == "c.csv":
+                (self.folder / link).symlink_to("b.csv")
+            result = self.solve("-o", "a.exr", "--faces", link)
+            self.assert_refused(result, f"hemirad: {link}: ", says="would overwrite another output")
+
     def test_output_over_the_scene(self):
         before = (self.folder / "scene.obj").read_bytes()
         (self.folder / "a.csv").symlink_to("scene.obj")
