@@ -161,6 +161,15 @@ class BadCheckpoints(Checkpoints):
         self.assert_refused(self.solve("--resume", "c.ckpt"),
                             "c.ckpt: No such file or directory")
 
+    @unittest.skipIf(os.geteuid() == 0, "root may search every folder")
+    def test_in_a_folder_that_may_not_be_searched(self):
+        (self.folder / "no").mkdir()
+        self.write("no/c.ckpt", "")
+        (self.folder / "no").chmod(0o600)
+        self.addCleanup((self.folder / "no").chmod, 0o700)
+        self.assert_refused(self.solve("--resume", "no/c.ckpt"),
+                            "no/c.ckpt: Permission denied")
+
     def test_where_something_else_is(self):
         before = self.bytes_of("scene.mtl")
         self.assert_refused(self.solve("--checkpoint", "scene.mtl"),
