@@ -84,6 +84,7 @@ class TemporaryFile {
 
     /// False, with errno, where disk or folder refuse.
     bool take_the_targets_place() {
+        take_the_targets_mode();
         kept_ = sync(descriptor_) && (!name_.empty() || give_name()) &&
                 std::rename(name_.c_str(), target_.c_str()) == 0;
         if (kept_) sync_folder(folder_of(target_));
@@ -91,6 +92,15 @@ class TemporaryFile {
     }
 
   private:
+    /// A picture that was kept from others stays so. Where it cannot be, it is written all the
+    /// same.
+    void take_the_targets_mode() const {
+        struct stat status {};
+        if (stat(target_.c_str(), &status) != 0) return;
+        [[maybe_unused]] const int ignored =
+            fchmod(descriptor_, status.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO));
+    }
+
     fs::path name_number(int attempt) const {
         return target_.parent_path() /
                (std::string(kPrefix) + std::to_string(getpid()) + "-" + std::to_string(attempt));

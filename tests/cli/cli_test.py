@@ -448,6 +448,15 @@ class Solve(CommandLine):
             pictures.add((self.folder / "scene.exr").read_bytes())
         self.assertEqual(1, len(pictures))
 
+    def test_what_replaces_an_older_file_has_its_mode(self):
+        self.write("a.exr", "older")
+        (self.folder / "a.exr").chmod(0o600)
+        self.assert_done(self.solve("-o", "a.exr", "--faces", "a.csv"))
+        modes = [(self.folder / name).stat().st_mode & 0o777 for name in ("a.exr", "a.csv")]
+        umask = os.umask(0)
+        os.umask(umask)
+        self.assertEqual([0o600, 0o666 & ~umask], modes)
+
     def test_half_is_smaller(self):
         self.assert_done(self.solve("-o", "float.exr"))
         self.assert_done(self.solve("-o", "half.exr", "--half"))
