@@ -59,6 +59,21 @@ std::vector<fs::path> snapshots_there(const SolveOptions& options) {
     return files;
 }
 
+/// Where one of the files could be a snapshot that is to be kept, however many shots there will be.
+void keep_off_snapshots(const SolveOptions& options, std::vector<fs::path> files) {
+    if (!options.snapshots.kept) return;
+    if (options.resume) files.push_back(*options.resume);
+    for (std::uint32_t atlas = 0; atlas < options.atlas_count; ++atlas) {
+        const fs::path exr = atlas_file(options.output, atlas);
+        for (const auto& file : files) {
+            const auto shots = shots_in_name(exr, place_of(file));
+            if (shots && place_of(snapshot_file(exr, *shots)) == place_of(file))
+                throw InputError("hemirad: " + printable(file.string()) +
+                                 ": could be overwritten by a snapshot of --keep-snapshots");
+        }
+    }
+}
+
 /// Emission may be up to what a double holds, a lightmap only what a float does.
 void check_finite(const fs::path& file, const Lightmap& lightmap) {
     const auto check = [&](const std::vector<std::vector<float>>& bands) {
@@ -171,6 +186,7 @@ void check_outputs(const SolveOptions& options) {
     const auto files = all_files(options);
     check_distinct(options.scene, files);
     if (options.resume) keep_resumed(options, files);
+    keep_off_snapshots(options, files);
     if (options.checkpoint) require_no_other_file(*options.checkpoint);
     for (const auto& file : files) check_writable(file);
 }

@@ -325,6 +325,18 @@ class BadOutputs(CommandLine):
         self.assert_refused(result, "hemirad: ./a.json: ")
         self.assertEqual("older", (self.folder / "a.txt").read_text())
 
+    def test_that_a_kept_snapshot_could_overwrite(self):
+        snapshots = ("-o", "a.exr", "--snapshot-every", "20", "--keep-snapshots")
+        (self.folder / "b.txt").symlink_to("a-40.exr")
+        for arguments, name in ((("--checkpoint", "a-20.exr"), "a-20.exr"),
+                                (("--checkpoint", "./a-7.exr"), "./a-7.exr"),
+                                (("--checkpoint", "b.txt"), "b.txt"),
+                                (("--resume", "a-40.exr"), "a-40.exr")):
+            with self.subTest(arguments):
+                self.assert_refused(self.solve(*snapshots, *arguments), f"hemirad: {name}: ",
+                                    says="could be overwritten by a snapshot of --keep-snapshots")
+        self.assert_done(self.solve(*snapshots, "--checkpoint", "a-x.exr", "--max-shots", "30"))
+
     def test_link_to_another_output_that_is_not_there_yet(self):
         (self.folder / "b.csv").symlink_to("a.exr")
         for link in ("b.csv", "c.csv"):
