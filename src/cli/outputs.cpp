@@ -29,7 +29,9 @@ namespace fs = std::filesystem;
 /// told later.
 fs::path place_of(const fs::path& file) {
     std::error_code fault;
-    const fs::path absolute = fs::absolute(link_target(file));
+    const fs::path absolute = fs::absolute(link_target(file), fault);
+    if (fault)
+        throw OutputError(printable(file.string()) + ": no current folder: " + fault.message());
     const fs::path place = fs::weakly_canonical(absolute, fault);
     return fault ? absolute.lexically_normal() : place;
 }

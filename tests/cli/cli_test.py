@@ -337,6 +337,19 @@ class BadOutputs(CommandLine):
                                     says="could be overwritten by a snapshot of --keep-snapshots")
         self.assert_done(self.solve(*snapshots, "--checkpoint", "a-x.exr", "--max-shots", "30"))
 
+    def test_in_a_current_folder_that_was_removed(self):
+        def remove_folder():
+            gone = self.folder / "gone"
+            gone.mkdir()
+            os.chdir(gone)
+            gone.rmdir()
+
+        result = subprocess.run([HEMIRAD, "solve", self.folder / "scene.obj", *QUICK, "-o", "a.exr"],
+                                preexec_fn=remove_folder, cwd=self.folder, text=True, timeout=60,
+                                capture_output=True, check=False)
+        self.assert_refused(result, "a.exr: no current folder: No such file or directory",
+                            exit_code=3)
+
     def test_link_to_another_output_that_is_not_there_yet(self):
         (self.folder / "b.csv").symlink_to("a.exr")
         for link in ("b.csv", "c.csv"):
