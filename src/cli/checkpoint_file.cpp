@@ -89,7 +89,7 @@ void append_rest(std::istream& stream, std::string& content) {
 std::string content_of(const fs::path& path) {
     std::error_code fault;
     const auto status = fs::status(path, fault);
-    if (!fs::exists(status)) refuse(path, std::generic_category().message(ENOENT));
+    if (!fs::exists(status)) refuse(path, fault.message());
     if (!fs::is_regular_file(status)) refuse(path, "not a regular file");
     std::ifstream stream(path, std::ios::binary);
     if (!stream) refuse(path, std::generic_category().message(errno));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "cli/exit_codes.h"
 #include "cli/memory.h"
@@ -129,7 +130,7 @@ void print_lights(std::ostream& out, const Mesh& mesh, Lights wanted) {
 /// Seconds before the first shot, kernels from the cache, and of shooting.
 struct TimeEstimate {
     double preparing = 0;
-    Forecast shooting;
+    std::optional<Forecast> shooting;
 };
 
 TimeEstimate estimate_time(const Mesh& mesh, const SolverSettings& settings,
@@ -137,7 +138,7 @@ TimeEstimate estimate_time(const Mesh& mesh, const SolverSettings& settings,
     const Stopwatch watch;
     ProgressiveSolver solver(mesh, settings, device);
     const double preparing = watch.seconds() - solver.build_seconds();
-    return {preparing, *solver.forecast()};
+    return {preparing, solver.forecast()};
 }
 
 /// Why nothing can be foretold, if so.
@@ -155,8 +156,12 @@ void print_time(std::ostream& out, const std::string& what, const Mesh& mesh,
     out << what;
     try {
         const auto estimate = estimate_time(mesh, settings, device);
-        out << time_text(estimate.shooting) << "; " << duration_text(estimate.preparing)
-            << " before\n";
+        if (estimate.shooting)
+            out << time_text(*estimate.shooting);
+        else
+            out << "unknown: to find out takes more than " << number_text(kMostForecastSeconds)
+                << " s";
+        out << "; " << duration_text(estimate.preparing) << " before\n";
     } catch (const InputError& fault) {
         out << printable(fault.what()) << '\n';
     }

@@ -25,10 +25,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The same for every way to write a file's name; weakly_canonical alone leaves "a" as it is where
-/// there is no such file yet. A folder that nobody may look into has its own fault told later.
+/// there is no such file yet, a link as well. A folder that nobody may look into has its own fault
+/// told later.
 fs::path place_of(const fs::path& file) {
     std::error_code fault;
-    const fs::path absolute = fs::absolute(file);
+    const fs::path absolute = fs::absolute(link_target(file), fault);
+    if (fault)
+        throw OutputError(printable(file.string()) + ": no current folder: " + fault.message());
     const fs::path place = fs::weakly_canonical(absolute, fault);
     return fault ? absolute.lexically_normal() : place;
 }
@@ -56,6 +59,21 @@ std::vector<fs::path> snapshots_there(const SolveOptions& options) {
         for (const auto shots : shots_kept(exr)) files.push_back(snapshot_file(exr, shots));
     }
     return files;
+}
+
+/// Where one of the files could be a snapshot that is to be kept, however many shots there will be.
+void keep_off_snapshots(const SolveOptions& options, std::vector<fs::path> files) {
+    if (!options.snapshots.kept) return;
+    if (options.resume) files.push_back(*options.resume);
+    for (std::uint32_t atlas = 0; atlas < options.atlas_count; ++atlas) {
+        const fs::path exr = atlas_file(options.output, atlas);
+        for (const auto& file : files) {
+            const auto shots = shots_in_name(exr, place_of(file));
+            if (shots && place_of(snapshot_file(exr, *shots)) == place_of(file))
+                throw InputError("hemirad: " + printable(file.string()) +
+                                 ": could be overwritten by a snapshot of --keep-snapshots");
+        }
+    }
 }
 
 /// Emission may be up to what a double holds, a lightmap only what a float does.
@@ -170,6 +188,7 @@ void check_outputs(const SolveOptions& options) {
     const auto files = all_files(options);
     check_distinct(options.scene, files);
     if (options.resume) keep_resumed(options, files);
+    keep_off_snapshots(options, files);
     if (options.checkpoint) require_no_other_file(*options.checkpoint);
     for (const auto& file : files) check_writable(file);
 }

@@ -1,5 +1,7 @@
 #include "cli/solve_identity.h"
 
+#include <algorithm>
+#include <string_view>
 #include <type_traits>
 
 #include "cli/mesh_options.h"
@@ -73,12 +75,23 @@ std::string mesh_fingerprint(const Mesh& mesh) {
         .digits();
 }
 
+/// A source but for its `#line`s, which tell where its files lie.
+std::string without_places(std::string_view source) {
+    std::string text;
+    while (!source.empty()) {
+        const auto line = source.substr(0, source.find('\n'));
+        source.remove_prefix(std::min(line.size() + 1, source.size()));
+        if (!line.starts_with("#line ")) text.append(line).append("\n");
+    }
+    return text;
+}
+
 /// Of all there are: those that a mode does without are among the other's.
 std::string kernels_fingerprint(const std::optional<std::filesystem::path>& folder) {
-    Sha256 sum;
+    Fingerprint fingerprint;
     for (const auto& name : kernel_names(FormFactorMode::analytic))
-        sum.add(kernel_source(name, folder));
-    return sum.digits();
+        fingerprint.of(without_places(kernel_source(name, folder)));
+    return fingerprint.digits();
 }
 
 std::string or_word(double number, const char* word_for_zero) {

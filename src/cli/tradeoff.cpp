@@ -88,6 +88,10 @@ class Tradeoff {
             take_solves();
         else
             say("nothing emits light, so there is nothing to solve");
+        if (interrupts_.requested() && taken_ == 0) {
+            say("interrupted: nothing is written");
+            return kInterrupted;
+        }
         csv_.write(options_.output);
         return interrupts_.requested() ? kInterrupted : kDone;
     }
@@ -100,14 +104,15 @@ class Tradeoff {
     void take_factors(const Mesh& mesh) {
         const auto scene = row_scene(mesh_settings_.patch_size, mesh.patches.size());
         say("true factors of " + counted(plan_.shooters, "patch", "patches"));
-        const FactorRows rows(mesh, plan_.shooters, plan_.truth_error, device_);
+        const FactorRows rows(mesh, plan_.shooters, plan_.truth_error, device_,
+                              [&] { return !interrupts_.requested(); });
         for (const auto& point : plan_.factors) {
-            if (interrupts_.requested()) return;
             const auto measured = rows.measure(point);
-            csv_.add(scene, point, rows.row_count(), measured);
+            if (!measured) return;
+            csv_.add(scene, point, rows.row_count(), *measured);
             ++taken_;
-            say(title(point) + ": " + three_digits(measured.errors.rms) + " rms, " +
-                three_digits(1e3 * measured.seconds) + " ms a row");
+            say(title(point) + ": " + three_digits(measured->errors.rms) + " rms, " +
+                three_digits(1e3 * measured->seconds) + " ms a row");
         }
     }
 
@@ -115,6 +120,7 @@ class Tradeoff {
         const auto go_on = [&](const Progress&) { return !interrupts_.requested(); };
         Solves solves(scene_, mesh_settings_, plan_.finest, device_, go_on);
         for (const auto& point : plan_.solves) {
+            if (interrupts_.requested()) return;
             const double patch_size = mesh_settings_.patch_size * point.patch_scale;
             const auto measured = solves.measure(point);
             if (interrupts_.requested()) return;

@@ -184,16 +184,17 @@ double median(std::vector<double> values) {
 }  // namespace
 
 FactorRows::FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_error,
-                       const mp1map::Device& device)
+                       const mp1map::Device& device, std::function<bool()> go_on)
     : mesh_(mesh),
       device_(device),
+      go_on_(std::move(go_on)),
       polygons_(polygons_of(mesh)),
       shooters_(spread_shooters(mesh, shooters)) {
     ViewFactorSettings settings;
     settings.target_error = truth_error;
     settings.from = shooters_;
     const auto factors =
-        view_factors(mesh, settings, device, [](std::size_t, std::size_t) { return true; });
+        view_factors(mesh, settings, device, [&](std::size_t, std::size_t) { return go_on_(); });
     for (const auto& row : factors.rows) {
         auto& values = truth_.emplace_back(mesh.patches.size());
         for (const FormFactor& factor : row) values[factor.to] = factor.value;
@@ -201,7 +202,8 @@ FactorRows::FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_er
     outside_ = factors.outside;
 }
 
-FactorMeasurement FactorRows::measure(const FactorPoint& point) const {
+std::optional<FactorMeasurement> FactorRows::measure(const FactorPoint& point) const {
+    if (!go_on_()) return {};
     const RowMaker make_row = point.method == Method::monte_carlo ? by_rays(point, polygons_)
                               : point.runs_on == RunsOn::device   ? on_device(point, mesh_, device_)
                                                                   : on_host(point, polygons_);
@@ -210,6 +212,7 @@ FactorMeasurement FactorRows::measure(const FactorPoint& point) const {
     ErrorSums sums;
     std::vector<double> seconds;
     for (std::size_t row = 0; row < shooters_.size(); ++row) {
+        if (!go_on_()) return {};
         const auto start = std::chrono::steady_clock::now();
         const FactorRow made = make_row(shooters_[row]);
         const auto passed = std::chrono::steady_clock::now() - start;

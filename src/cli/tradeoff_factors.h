@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "cli/tradeoff_plan.h"
@@ -27,16 +29,19 @@ struct FactorMeasurement {
 class FactorRows {
   public:
     /// Keeps a reference to the mesh. Finds the truth for `shooters` fronts, evenly spread over the
-    /// mesh, to within `truth_error`.
+    /// mesh, to within `truth_error`. `go_on` is asked now and then; once it says no, it always
+    /// does.
     FactorRows(const Mesh& mesh, std::uint32_t shooters, double truth_error,
-               const mp1map::Device& device);
+               const mp1map::Device& device, std::function<bool()> go_on);
 
-    FactorMeasurement measure(const FactorPoint& point) const;
+    /// Nothing where it was stopped, or the truth was.
+    std::optional<FactorMeasurement> measure(const FactorPoint& point) const;
     std::size_t row_count() const { return shooters_.size(); }
 
   private:
     const Mesh& mesh_;
     const mp1map::Device& device_;
+    std::function<bool()> go_on_;
     std::vector<reference::Polygon> polygons_;
     std::vector<std::uint32_t> shooters_;
     std::vector<std::vector<double>> truth_;  ///< [row][patch]

@@ -84,6 +84,7 @@ class TemporaryFile {
 
     /// False, with errno, where disk or folder refuse.
     bool take_the_targets_place() {
+        take_the_targets_mode();
         kept_ = sync(descriptor_) && (!name_.empty() || give_name()) &&
                 std::rename(name_.c_str(), target_.c_str()) == 0;
         if (kept_) sync_folder(folder_of(target_));
@@ -91,6 +92,15 @@ class TemporaryFile {
     }
 
   private:
+    /// A picture that was kept from others stays so. Where it cannot be, it is written all the
+    /// same.
+    void take_the_targets_mode() const {
+        struct stat status {};
+        if (stat(target_.c_str(), &status) != 0) return;
+        [[maybe_unused]] const int ignored =
+            fchmod(descriptor_, status.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO));
+    }
+
     fs::path name_number(int attempt) const {
         return target_.parent_path() /
                (std::string(kPrefix) + std::to_string(getpid()) + "-" + std::to_string(attempt));
@@ -176,16 +186,6 @@ void fill(const fs::path& file, const fs::path& path,
     if (!stream) fail(path, errno);
 }
 
-/// The file itself, be it there or not, where `path` is a symbolic link: a rename would replace the
-/// link.
-fs::path resolved(fs::path path) {
-    constexpr int kMostLinks = 40;  // Linux's path_resolution(7)
-    std::error_code fault;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(path, fault); ++i)
-        path = path.parent_path() / fs::read_symlink(path, fault);
-    return path;
-}
-
 /// What a rename would not notice: it replaces read-only files as well.
 void require_replaceable(const fs::path& path) {
     std::error_code ignored;
@@ -196,6 +196,14 @@ void require_replaceable(const fs::path& path) {
 
 }  // namespace
 
+fs::path link_target(fs::path path) {
+    constexpr int kMostLinks = 40;  // Linux's path_resolution(7)
+    std::error_code fault;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(path, fault); ++i)
+        path = path.parent_path() / fs::read_symlink(path, fault);
+    return path;
+}
+
 bool is_device_or_pipe(const fs::path& path) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
@@ -205,7 +213,7 @@ bool is_device_or_pipe(const fs::path& path) {
 void write_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
     require_replaceable(path);
     if (is_device_or_pipe(path)) return fill(path, path, write);
-    TemporaryFile temporary(resolved(path));
+    TemporaryFile temporary(link_target(path));
     if (!temporary.is_open()) fail(path, errno);
     fill(temporary.path(), path, write);
     if (!temporary.take_the_targets_place()) fail(path, errno);
@@ -214,7 +222,7 @@ void write_atomically(const fs::path& path, const std::function<void(std::ostrea
 void check_writable(const fs::path& path) {
     require_replaceable(path);
     if (is_device_or_pipe(path)) return;
-    const fs::path target = resolved(path);
+    const fs::path target = link_target(path);
     const TemporaryFile temporary(target);
     if (!temporary.is_open()) fail(path, errno);
     remove_what_was_left(folder_of(target));

@@ -14,6 +14,10 @@ namespace hemirad {
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(std::ostream&)>& write);
 
+/// The file itself, be it there or not, where `path` is a symbolic link: a rename would replace the
+/// link.
+std::filesystem::path link_target(std::filesystem::path path);
+
 /// What is written directly.
 bool is_device_or_pipe(const std::filesystem::path& path);
 

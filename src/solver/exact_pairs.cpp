@@ -82,16 +82,16 @@ bool ExactPairs::needs_it(const PatchShape& from, const PatchShape& to, double u
     return larger > 0 && error_.of(larger, from, to) > target_;
 }
 
-void ExactPairs::integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Worker& worker) const {
-    if (i == j || (both && j < i)) return;
+bool ExactPairs::integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Worker& worker) const {
+    if (i == j || (both && j < i)) return false;
     const std::uint32_t row = i;
     // From the smaller one, so that the error of the way back is smaller still.
     if (both && patches_[j].area < patches_[i].area) std::swap(i, j);
     if (symmetric_ && covered_[i] && !covered_[j]) std::swap(i, j);
     const PatchShape &a = patches_[i], &b = patches_[j];
-    if (!may_need_it(a, b)) return;
+    if (!may_need_it(a, b)) return false;
     const double unblocked = polygon_to_polygon(a.corners, b.corners);
-    if (!needs_it(a, b, unblocked)) return;
+    if (!needs_it(a, b, unblocked)) return false;
     worker.spheres.between(i, j, worker.blockers);
     const Estimate there =
         blocked_polygon_to_polygon(a.corners, b.corners, unblocked, worker.blockers,
@@ -100,6 +100,7 @@ void ExactPairs::integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Wor
     if (both || i == row) worker.found.push_back({i, j, there});
     if (both || j == row)
         worker.found.push_back({j, i, {there.value * scale, there.error * scale}});
+    return true;
 }
 
 std::vector<ExactPair> ExactPairs::integrate(
@@ -113,8 +114,10 @@ std::vector<ExactPair> ExactPairs::integrate(
         Worker worker{PatchSpheres(patches_), {}, {}};
         for (std::size_t row; !stopped && (row = next++) < from.size();) {
             if (reports && !on_progress(row)) stopped = true;
-            for (std::uint32_t to = 0; to < patches_.size(); ++to)
-                integrate_pair(from[row], to, symmetric_ && is_row[to], worker);
+            for (std::uint32_t to = 0; !stopped && to < patches_.size(); ++to)
+                if (integrate_pair(from[row], to, symmetric_ && is_row[to], worker) && reports &&
+                    !on_progress(row))
+                    stopped = true;
         }
         return std::move(worker.found);
     };

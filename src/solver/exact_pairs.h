@@ -48,7 +48,7 @@ class ExactPairs {
   private:
     struct Worker;
 
-    void integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Worker& worker) const;
+    bool integrate_pair(std::uint32_t i, std::uint32_t j, bool both, Worker& worker) const;
     bool may_need_it(const PatchShape& from, const PatchShape& to) const;
     bool needs_it(const PatchShape& from, const PatchShape& to, double unblocked) const;
 

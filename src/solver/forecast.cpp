@@ -13,10 +13,12 @@ namespace hemirad {
 namespace {
 
 constexpr std::uint32_t kMostGroups = 256, kLeastMembers = 4, kLeastGroups = 16;
-// Looks in all take about this long at most, whatever the accuracy asked for.
-constexpr double kMostSeconds = 20;
+// What is planned; the rest is for looks that take longer than the one that was timed.
+constexpr double kPlannedSeconds = 0.75 * kMostForecastSeconds;
+constexpr double kSecondsBetweenQuestions = 0.1;
 // Looks are timed so often, and the last time counts: in the first more is new to the machine.
 constexpr std::size_t kTurns = 2;
+constexpr std::size_t kLooksOfGroup = 1 + kTurns;
 
 using Table = std::vector<std::vector<double>>;
 
@@ -86,12 +88,31 @@ using Pass = void (*)(ShotPipeline&);
 struct Asked {
     ShotPipeline& pipeline;
     SolveState state;
+    const std::function<bool()>& go_on;
+    std::size_t passes_unasked = 1;  // that take about kSecondsBetweenQuestions
 };
 
+/// False where it was stopped on the way.
+bool make_passes(Asked& asked, std::size_t count, Pass pass) {
+    while (count > 0) {
+        const Stopwatch stopwatch;
+        const std::size_t passes = std::min(count, asked.passes_unasked);
+        for (std::size_t i = 0; i < passes; ++i) pass(asked.pipeline);
+        asked.pipeline.shot();  // the device has made them
+        if (!asked.go_on()) return false;
+        const double fitting = kSecondsBetweenQuestions * static_cast<double>(passes) /
+                               std::max(stopwatch.seconds(), 1e-9);
+        asked.passes_unasked =
+            static_cast<std::size_t>(std::clamp(fitting, 1.0, 2.0 * static_cast<double>(passes)));
+        count -= passes;
+    }
+    return true;
+}
+
 /// Until these have shot, of equal flux. Returns how many shots that were: fewer where too little
-/// was left to the last ones.
-std::uint32_t let_shoot(Asked& asked, const std::vector<std::uint32_t>& shooters,
-                        Pass pass = shoot) {
+/// was left to the last ones; nothing where it was stopped.
+std::optional<std::uint32_t> let_shoot(Asked& asked, const std::vector<std::uint32_t>& shooters,
+                                       Pass pass = shoot) {
     ShotPipeline& pipeline = asked.pipeline;
     SolveState state = asked.state;
     std::ranges::fill(state.unshot, 0.0f);
@@ -105,7 +126,7 @@ std::uint32_t let_shoot(Asked& asked, const std::vector<std::uint32_t>& shooters
     const std::size_t salvos = (shooters.size() + pipeline.salvo() - 1) / pipeline.salvo();
     device::Shot shot{};
     do {
-        for (std::size_t i = 0; i < salvos * pipeline.most_parts(); ++i) pass(pipeline);
+        if (!make_passes(asked, salvos * pipeline.most_parts(), pass)) return {};
         shot = pipeline.shot();
         if (shot.status == kBinsFull) pipeline.enlarge_lists();
         pass = shoot;
@@ -115,10 +136,12 @@ std::uint32_t let_shoot(Asked& asked, const std::vector<std::uint32_t>& shooters
     return shot.shots;
 }
 
-double seconds_a_shot(Asked& asked, const std::vector<std::uint32_t>& shooters, Pass pass = shoot) {
+std::optional<double> seconds_a_shot(Asked& asked, const std::vector<std::uint32_t>& shooters,
+                                     Pass pass = shoot) {
     const Stopwatch stopwatch;
     const auto shots = let_shoot(asked, shooters, pass);
-    return stopwatch.seconds() / std::max(shots, 1u);
+    if (!shots) return {};
+    return stopwatch.seconds() / std::max(*shots, 1u);
 }
 
 /// What each group's patches receive of one unit that a group's middle shoots.
@@ -129,8 +152,7 @@ std::optional<Table> factors_of(Asked& asked, const ForecastTask& task,
         for (const std::uint32_t member : groups[i]) group_of[member] = i;
     Table factor;
     for (const Group& group : groups) {
-        if (!task.go_on()) return {};
-        let_shoot(asked, {middle_of(group)});
+        if (!let_shoot(asked, {middle_of(group)})) return {};
         const auto received = asked.pipeline.received();
         factor.emplace_back(groups.size());
         for (std::size_t patch = 0; patch < task.shooter_of.size(); ++patch)
@@ -210,16 +232,23 @@ Forecast shoot_groups(Exchange exchange, const ForecastTask& task, double room) 
     return result;
 }
 
-/// So that looks, 1 + kTurns a group, take no longer than they may.
-std::uint32_t group_count(double look_seconds) {
-    const double count = kMostSeconds / ((1 + kTurns) * std::max(look_seconds, 1e-9));
-    return static_cast<std::uint32_t>(std::clamp<double>(count, kLeastGroups, kMostGroups));
+/// So many that their looks take no longer than they may; none where the fewest take longer.
+std::vector<Group> groups_in_time(const ForecastTask& task, std::size_t stride,
+                                  double look_seconds) {
+    const double most = kPlannedSeconds / (kLooksOfGroup * std::max(look_seconds, 1e-9));
+    auto wanted = static_cast<std::uint32_t>(std::clamp<double>(most, kLeastGroups, kMostGroups));
+    for (;; wanted = std::max(wanted / 2, kLeastGroups)) {
+        auto groups = group_shooters(task.light, stride, task.shooters, wanted);
+        if (static_cast<double>(groups.size()) <= most) return groups;
+        if (wanted == kLeastGroups) return {};
+    }
 }
 
-std::optional<Exchange> exchange_of(Asked& asked, const ForecastTask& task, std::uint32_t groups) {
+std::optional<Exchange> exchange_of(Asked& asked, const ForecastTask& task, double look_seconds) {
     const std::size_t stride = asked.pipeline.shooter_stride();
     Exchange exchange;
-    exchange.groups = group_shooters(task.light, stride, task.shooters, groups);
+    exchange.groups = groups_in_time(task, stride, look_seconds);
+    if (exchange.groups.empty()) return {};
     auto factor = factors_of(asked, task, exchange.groups);
     if (!factor) return {};
     exchange.factor = std::move(*factor);
@@ -229,44 +258,59 @@ std::optional<Exchange> exchange_of(Asked& asked, const ForecastTask& task, std:
 
 /// By members that have not looked yet, in salvos as in a solve; `otherwise` where groups have
 /// none.
-double seconds_a_look(Asked& asked, const std::vector<Group>& groups, double otherwise) {
-    double seconds = otherwise;
+std::optional<double> seconds_a_look(Asked& asked, const std::vector<Group>& groups,
+                                     double otherwise) {
+    std::optional<double> seconds = otherwise;
     for (std::size_t turn = 0; turn < kTurns; ++turn) {
         std::vector<std::uint32_t> shooters;
         for (const Group& group : groups)
             if (group.size() > 2 * kTurns)
                 shooters.push_back(group[group.size() * (1 + 2 * turn) / (2 * kTurns)]);
         if (!shooters.empty()) seconds = seconds_a_shot(asked, shooters);
+        if (!seconds) break;
     }
     return seconds;
 }
 
-double seconds_a_repeat(Asked& asked, const std::vector<Group>& groups) {
+std::optional<double> seconds_a_repeat(Asked& asked, const std::vector<Group>& groups) {
     std::vector<std::uint32_t> middles;
     for (const Group& group : groups) middles.push_back(middle_of(group));
     return seconds_a_shot(asked, middles, distribute_flux);
 }
 
 std::optional<Forecast> foretold(Asked& asked, const ForecastTask& task) {
-    let_shoot(asked, {0});  // a first launch takes longer
-    const double look = seconds_a_shot(asked, {task.shooters / 2});
+    const auto look = seconds_a_shot(asked, {task.shooters / 2});
+    if (!look) return {};
     const auto most_looks = std::min<std::uint64_t>(task.shooters, task.max_shots);
-    if (look * static_cast<double>(most_looks) < task.least_seconds) return {};
-    const auto exchange = exchange_of(asked, task, group_count(look));
+    if (*look * static_cast<double>(most_looks) < task.least_seconds) return {};
+    const auto exchange = exchange_of(asked, task, *look);
     if (!exchange) return {};
     const double room = asked.pipeline.room_for_rows();
     Forecast result = shoot_groups(*exchange, task, room);
-    result.seconds = result.looks * seconds_a_look(asked, exchange->groups, look);
-    if (room >= static_cast<double>(exchange->groups.size()))
-        result.seconds += (result.shots - result.looks) * seconds_a_repeat(asked, exchange->groups);
+    const auto in_salvos = seconds_a_look(asked, exchange->groups, *look);
+    if (!in_salvos) return {};
+    result.seconds = result.looks * *in_salvos;
+    if (room < static_cast<double>(exchange->groups.size())) return result;
+    const auto repeat = seconds_a_repeat(asked, exchange->groups);
+    if (!repeat) return {};
+    result.seconds += (result.shots - result.looks) * *repeat;
     return result;
 }
 
 }  // namespace
 
 std::optional<Forecast> forecast(ShotPipeline& pipeline, const ForecastTask& task) {
-    Asked asked{pipeline, pipeline.state()};
-    const auto result = foretold(asked, task);
+    std::optional<Stopwatch> looking;
+    const std::function<bool()> go_on = [&] {
+        return task.go_on() && (!looking || looking->seconds() < kMostForecastSeconds);
+    };
+    Asked asked{pipeline, pipeline.state(), go_on};
+    std::optional<Forecast> result;
+    if (let_shoot(asked, {0})) {  // a first launch takes longer, where kernels are compiled minutes
+        looking.emplace();
+        result = foretold(asked, task);
+    }
+    pipeline.clear_counts();  // of a look that was stopped
     pipeline.set_state(asked.state);
     return result;
 }

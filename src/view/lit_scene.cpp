@@ -157,19 +157,22 @@ LitScene read_lit_scene(const fs::path& gltf, const std::optional<fs::path>& exr
     return lit;
 }
 
+std::optional<std::uint64_t> shots_in_name(const fs::path& exr, const fs::path& file) {
+    const std::string prefix = exr.stem().string() + "-", stem = file.stem().string();
+    if (file.extension() != exr.extension() || !stem.starts_with(prefix)) return {};
+    const char *first = stem.data() + prefix.size(), *last = stem.data() + stem.size();
+    std::uint64_t shots = 0;
+    const auto [rest, fault] = std::from_chars(first, last, shots);
+    if (fault != std::errc() || rest != last) return {};
+    return shots;
+}
+
 std::set<std::uint64_t> shots_kept(const fs::path& exr) {
     std::set<std::uint64_t> found;
-    const std::string prefix = exr.stem().string() + "-";
     const fs::path folder = exr.has_parent_path() ? exr.parent_path() : ".";
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-        const std::string stem = entry.path().stem().string();
-        if (entry.path().extension() != exr.extension() || !stem.starts_with(prefix)) continue;
-        const char *first = stem.data() + prefix.size(), *last = stem.data() + stem.size();
-        std::uint64_t shots = 0;
-        const auto [rest, fault] = std::from_chars(first, last, shots);
-        if (fault == std::errc() && rest == last) found.insert(shots);
-    }
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+        if (const auto shots = shots_in_name(exr, entry.path())) found.insert(*shots);
     return found;
 }
 

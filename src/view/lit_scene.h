@@ -38,6 +38,10 @@ struct Snapshot {
 /// The file in which the picture after so many shots is kept: NAME-SHOTS.exr beside NAME.exr.
 std::filesystem::path snapshot_file(const std::filesystem::path& exr, std::uint64_t shots);
 
+/// The other way round: nothing where a file's name is none of these.
+std::optional<std::uint64_t> shots_in_name(const std::filesystem::path& exr,
+                                           const std::filesystem::path& file);
+
 /// After which shots there is such a file, whatever it holds.
 std::set<std::uint64_t> shots_kept(const std::filesystem::path& exr);
 

@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import scenes
 from cli_test import LONG, CommandLine
 from exr import Exr
 
+KERNELS = pathlib.Path(__file__).resolve().parents[2] / "kernels"
 KEPT = ("shots", "ledger", "closure", "unshot_fraction", "lights", "error", "settings", "outputs")
 
 
@@ -73,6 +75,13 @@ class Resume(Checkpoints):
         self.assert_done(self.solve("-o", "b.exr", "--quantity", "radiosity", "--time-limit",
                                     "100"))
         self.assertEqual(self.bytes_of("b.exr"), self.bytes_of("a.exr"))
+
+    def test_goes_on_wherever_the_same_kernels_lie(self):
+        shutil.copytree(KERNELS, self.folder / "kk")
+        self.stop_early("--kernels", "kk")
+        for folder in (("--kernels", "./kk"), ("--kernels", str(self.folder / "kk")), ()):
+            with self.subTest(folder):
+                self.assert_done(self.solve("--resume", "c.ckpt", "-o", "a.exr", *folder))
 
     def test_is_none_where_the_time_is_over_before_the_second_split(self):
         """Less than a solve takes to begin, more than it then takes to end."""
@@ -152,6 +161,13 @@ class BadCheckpoints(Checkpoints):
                 self.assert_not_resumed(says)
             self.write(name, before)
 
+    def test_of_other_kernels(self):
+        shutil.copytree(KERNELS, self.folder / "kk")
+        self.stop_early("--kernels", "kk")
+        kernel = self.folder / "kk" / "choose_shooter.cl"
+        kernel.write_text(kernel.read_text(encoding="ascii") + "// and more\n", encoding="ascii")
+        self.assert_not_resumed("made with other kernels", "--kernels", "kk")
+
     def test_torn(self):
         self.stop_early()
         whole = self.bytes_of("c.ckpt")
@@ -163,6 +179,15 @@ class BadCheckpoints(Checkpoints):
     def test_missing(self):
         self.assert_refused(self.solve("--resume", "c.ckpt"),
                             "c.ckpt: No such file or directory")
+
+    @unittest.skipIf(os.geteuid() == 0, "root may search every folder")
+    def test_in_a_folder_that_may_not_be_searched(self):
+        (self.folder / "no").mkdir()
+        self.write("no/c.ckpt", "")
+        (self.folder / "no").chmod(0o600)
+        self.addCleanup((self.folder / "no").chmod, 0o700)
+        self.assert_refused(self.solve("--resume", "no/c.ckpt"),
+                            "no/c.ckpt: Permission denied")
 
     def test_where_something_else_is(self):
         before = self.bytes_of("scene.mtl")

@@ -326,6 +326,39 @@ class BadOutputs(CommandLine):
         self.assert_refused(result, "hemirad: ./a.json: ")
         self.assertEqual("older", (self.folder / "a.txt").read_text())
 
+    def test_that_a_kept_snapshot_could_overwrite(self):
+        snapshots = ("-o", "a.exr", "--snapshot-every", "20", "--keep-snapshots")
+        (self.folder / "b.txt").symlink_to("a-40.exr")
+        for arguments, name in ((("--checkpoint", "a-20.exr"), "a-20.exr"),
+                                (("--checkpoint", "./a-7.exr"), "./a-7.exr"),
+                                (("--checkpoint", "b.txt"), "b.txt"),
+                                (("--resume", "a-40.exr"), "a-40.exr")):
+            with self.subTest(arguments):
+                self.assert_refused(self.solve(*snapshots, *arguments), f"hemirad: {name}: ",
+                                    says="could be overwritten by a snapshot of --keep-snapshots")
+        self.assert_done(self.solve(*snapshots, "--checkpoint", "a-x.exr", "--max-shots", "30"))
+
+    def test_in_a_current_folder_that_was_removed(self):
+        def remove_folder():
+            gone = self.folder / "gone"
+            gone.mkdir()
+            os.chdir(gone)
+            gone.rmdir()
+
+        result = subprocess.run([HEMIRAD, "solve", self.folder / "scene.obj", *QUICK, "-o", "a.exr"],
+                                preexec_fn=remove_folder, cwd=self.folder, text=True, timeout=60,
+                                capture_output=True, check=False)
+        self.assert_refused(result, "a.exr: no current folder: No such file or directory",
+                            exit_code=3)
+
+    def test_link_to_another_output_that_is_not_there_yet(self):
+        (self.folder / "b.csv").symlink_to("a.exr")
+        for link in ("b.csv", "c.csv"):
+            if link == "c.csv":
+                (self.folder / link).symlink_to("b.csv")
+            result = self.solve("-o", "a.exr", "--faces", link)
+            self.assert_refused(result, f"hemirad: {link}: ", says="would overwrite another output")
+
     def test_output_over_the_scene(self):
         before = (self.folder / "scene.obj").read_bytes()
         (self.folder / "a.csv").symlink_to("scene.obj")
@@ -440,6 +473,15 @@ class Solve(CommandLine):
             self.assert_done(self.solve(*machine))
             pictures.add((self.folder / "scene.exr").read_bytes())
         self.assertEqual(1, len(pictures))
+
+    def test_what_replaces_an_older_file_has_its_mode(self):
+        self.write("a.exr", "older")
+        (self.folder / "a.exr").chmod(0o600)
+        self.assert_done(self.solve("-o", "a.exr", "--faces", "a.csv"))
+        modes = [(self.folder / name).stat().st_mode & 0o777 for name in ("a.exr", "a.csv")]
+        umask = os.umask(0)
+        os.umask(umask)
+        self.assertEqual([0o600, 0o666 & ~umask], modes)
 
     def test_half_is_smaller(self):
         self.assert_done(self.solve("-o", "float.exr"))

@@ -160,6 +160,13 @@ class Foretold(LimitsTest):
         self.assertIsNone(report["estimate"]["shots"])
         self.assertNotIn("\ntime ", told)
 
+    def test_nothing_is_foretold_where_that_takes_too_long(self):
+        options = ("--resolution", "4096", "--shooter-samples", "4", "--patch-size", "0.5")
+        begin = time.monotonic()
+        line = self.time_line(*options)
+        self.assertLess(time.monotonic() - begin, 30)
+        self.assertRegex(line, r"^unknown: to find out takes more than 20 s; \d.* before$")
+
     def test_info_says_why_it_tells_no_time(self):
         info = self.run_hemirad("info", SCENES / "cornell.gltf", "--target-error", "0.1")
         self.assertRegex(info.stdout, r"\ntime +--target-error")

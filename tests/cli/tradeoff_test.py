@@ -3,14 +3,17 @@
 import csv
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import scenes
 
 HEMIRAD = os.environ["HEMIRAD"]
+CORNELL = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "cornell.gltf"
 NUMBERS = ("patch_size", "patches", "samples", "seconds", "rms_error", "largest_error")
 
 
@@ -163,6 +166,21 @@ class OddScenes(scenes.InFolder):
         settings = {"runs_on": "device", "resolution": "128", "shooter_samples": "2"}
         self.assertGreater(error(rows, method="constant_distance", **settings),
                            1.05 * error(rows, method="count", **settings))
+
+    def test_stopped_before_the_first_row_leaves_the_older_table(self):
+        """Of patches whose factors take minutes to integrate."""
+        self.write("out.csv", "older")
+        process = subprocess.Popen([HEMIRAD, "tradeoff", CORNELL, "--patch-size", "0.02", "-o",
+                                    "out.csv"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.kill)
+        self.assertIn("true factors", process.stderr.readline())
+        time.sleep(2)
+
+        process.send_signal(signal.SIGINT)
+
+        self.assertEqual(130, process.wait(20))
+        self.assertEqual("older", (self.folder / "out.csv").read_text(encoding="utf-8"))
 
     def test_wrong_files_are_refused_before_the_work(self):
         write_scene(self.folder)

@@ -76,6 +76,16 @@ TEST_F(AtomicFile, ReplacesAnOlderOne) {
     EXPECT_EQ(bytes_of(file("a.txt")), "whole");
 }
 
+TEST_F(AtomicFile, HasTheModeOfTheOlderOne) {
+    std::ofstream(file("a.txt")) << "older";
+    fs::permissions(file("a.txt"), fs::perms::owner_read | fs::perms::owner_write);
+
+    write_atomically(file("a.txt"), write_text);
+
+    EXPECT_EQ(fs::status(file("a.txt")).permissions(),
+              fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(AtomicFile, ASymbolicLinkStaysOne) {
     std::ofstream(file("a.txt")) << "older";
     fs::create_symlink("a.txt", file("link"));

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/solved.h"
+#include "solver/stopwatch.h"
 #include "solver/support.h"
 
 // What a solve will take, told before it begins, against what it took.
@@ -60,6 +61,40 @@ TEST(Forecast, ChangesNoBit) {
     how.salvo = 8;
     how.count_shots = true;
     expect_equal(ended(box(), how, true).solved, ended(box(), how, false).solved);
+}
+
+// After so many questions, also in the midst of a look.
+TEST(Forecast, StoppedAnywhereChangesNoBit) {
+    auto how = draft();
+    how.salvo = 8;
+    how.shooter_samples = 3;
+    const auto mesh = box();
+    const auto device = mp1map::Device::open("");
+    const auto whole = ended(mesh, how, false).solved;
+    for (const int most : {1, 4, 25, 300}) {
+        ProgressiveSolver solver(mesh, how, device);
+        int questions = 0;
+        if (solver.forecast(0, [&] { return ++questions < most; })) break;
+        EXPECT_EQ(questions, most);
+        solver.solve(go_on);
+        expect_equal({solver.solution(), solver.closure(), solver.repeated_shots()}, whole);
+    }
+}
+
+TEST(Forecast, IsAskedUpToItsEnd) {
+    const auto mesh = meshed(scene_named("cornell.gltf"), 0.03);
+    const auto device = mp1map::Device::open("");
+    auto how = draft();
+    how.resolution = 512;  // some seconds in all
+    how.salvo = 8;
+    ProgressiveSolver solver(mesh, how, device);
+    const Stopwatch stopwatch;
+    double last_asked = 0;
+    EXPECT_TRUE(solver.forecast(0, [&] {
+        last_asked = stopwatch.seconds();
+        return true;
+    }));
+    EXPECT_LT(stopwatch.seconds() - last_asked, stopwatch.seconds() / 4);
 }
 
 TEST(Forecast, ShotsAreNoMoreThanAllowed) {
