@@ -119,8 +119,7 @@ Camera named_camera(const LitScene& lit, const std::string& name) {
 
 Camera own_camera(const Scene& scene, const RenderOptions& options) {
     Camera camera{"eye", *options.eye};
-    const glm::dvec3 ahead =
-        options.look_at.value_or(bounds_of(scene.positions).middle()) - camera.eye;
+    const glm::dvec3 ahead = options.look_at.value_or(bounds_of(scene).middle()) - camera.eye;
     const glm::dvec3 right = glm::cross(ahead, options.up);
     if (!(glm::length(right) > 1e-9 * glm::length(ahead) * glm::length(options.up)))
         fail(scene, "--eye looks along --up, or nowhere; --look-at and --up say where");
