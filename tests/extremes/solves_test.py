@@ -225,11 +225,20 @@ class Emissions(Extremes):
                                   capture_output=True, timeout=120, check=False)
             self.assert_refused(info, 'scene.obj: band "G" emits ', "is counted")
 
-    def test_beyond_the_pixels_are_refused_and_below_are_told(self):
-        for emission, pixels, fault in (("1e41", (), "range of float"),
-                                        ("1e9", ("--half",), "range of half")):
-            self.materials(f"{emission} 1 1")
-            self.assert_refused(self.solve(PLAIN, *pixels), "a.exr: ", fault, exit_code=3)
+    def test_beyond_floats_leave_the_table(self):
+        self.materials("1e41 1 1")
+        result = self.solve(PLAIN)
+        self.assertEqual(3, result.returncode, result.stderr)
+        self.assertIn("a.exr: values are beyond the range of float", result.stderr)
+        self.assertFalse((self.folder / "a.exr").exists())
+        self.assertGreater(max(self.faces()), 1e39)
+
+    def test_beyond_half_are_floats(self):
+        self.materials("1e9 1 1")
+        self.assert_numbers(self.solve(PLAIN, "--half"))
+        self.assertGreater(max(self.picture()["R"]), 65504)
+
+    def test_below_the_pixels_are_told(self):
         for emission, pixels, least in (("1e-40", (), LEAST_FLOAT),
                                         ("1e-5", ("--half",), LEAST_HALF)):
             self.materials(f"{emission} 1 1")
