@@ -34,6 +34,7 @@ class LimitsTest(CommandLine):
         return json.loads((self.folder / "a.json").read_text()), result.stderr
 
 
+@unittest.skipIf("ASAN_OPTIONS" in os.environ, "a sanitizer takes more than all else")
 class Memory(LimitsTest):
     def assert_estimated(self, scene, *options):
         # Whether kernels had to be compiled is not for the test to say: first they are not to be.
