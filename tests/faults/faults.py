@@ -303,10 +303,10 @@ class Each:
 
     def fate_of_reading(self, call):
         name = pathlib.Path(call.what).name
-        if name == "c.ckpt":  # which is asked whether it is one, then what is in it
-            asks = next(other for other in self.calls if (other.function, other.what) ==
-                        (call.function, call.what)) is call
-            return (1, name) if asks else (0, "")
+        if name == "c.ckpt":  # which is asked whether it is one, and at last what is in it
+            last = max(i for i, other in enumerate(self.calls)
+                       if other.function == "fopen64" and other.what.endswith(name))
+            return (1, name) if self.calls.index(call) < last else (0, "")
         if name in INPUTS:
             return 1, name
         return (3, name) if name in self.whole else (0, "")
