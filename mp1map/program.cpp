@@ -1,5 +1,7 @@
 #include "mp1map/program.h"
 
+#include <sstream>
+
 namespace mp1map {
 namespace {
 
@@ -28,6 +30,14 @@ std::string first_error(const std::string& log) {
     return log.substr(begin, log.find('\n', at) - begin);
 }
 
+// Whether there is anything in it but that line.
+bool says_more(const std::string& log, const std::string& error) {
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.empty() && line != error) return true;
+    return false;
+}
+
 Kernel kernel_of(const cl::Program& program, const std::string& name, const Device& device) {
     try {
         const cl::Kernel kernel(program, name.c_str());
@@ -50,8 +60,9 @@ cl::Program built(const Device& device, const std::string& source, const std::st
     if (error == CL_SUCCESS) return program;
     if (error != CL_BUILD_PROGRAM_FAILURE) throw cl::Error(error, "clBuildProgram");
     const auto log = build_log(program, device);
-    throw DeviceError("the kernels do not compile on " + device.summary().name + ": " +
-                      first_error(log) + (log.empty() ? "" : "\n" + log));
+    const auto fault = first_error(log);
+    throw DeviceError("the kernels do not compile on " + device.summary().name + ": " + fault +
+                      (says_more(log, fault) ? "\n" + log : ""));
 }
 
 }  // namespace
