@@ -22,7 +22,8 @@ struct NearPairs {
 /// from receiver to shooter: that is what a receiver's irradiance goes by.
 NearPairs near_pairs(const Mesh& mesh, double error);
 
-/// How often a shooter finds a patch near, from one in so many shooters that a thousand look.
+/// How often a shooter finds a patch near, from one in so many shooters that a thousand look, or
+/// fewer where each has many to look at.
 std::uint64_t estimated_near_finds(const Mesh& mesh, double error);
 
 /// What near_pairs() takes while it makes them, for so many finds.
