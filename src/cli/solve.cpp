@@ -259,7 +259,43 @@ SolveOptions without_interim_files(SolveOptions options) {
     return options;
 }
 
-void write_results(const Work& work, const SolveOptions& options, Outcome& outcome);
+std::vector<LightmapFile> files_of(const Work& work, const SolveOptions& options,
+                                   const std::vector<std::size_t>& covered) {
+    if (!options.report) return {};
+    std::vector<LightmapFile> files;
+    for (auto& contents : atlas_contents(work.scene, work.mesh, work.layout)) {
+        const auto atlas = static_cast<std::uint32_t>(files.size());
+        files.push_back({atlas_file(options.output, atlas), std::move(contents), covered[atlas]});
+    }
+    return files;
+}
+
+/// Throws what the first that cannot be written throws, once all were tried.
+void write_results(const Work& work, const SolveOptions& options, Outcome& outcome) {
+    std::exception_ptr fault;
+    const auto attempt = [&](const auto& write) {
+        try {
+            write();
+        } catch (const std::exception&) {
+            if (!fault) fault = std::current_exception();
+        }
+    };
+    const bool layer = options.estimate_error && outcome.error;
+    const auto* const gathered = outcome.gathered ? &*outcome.gathered : nullptr;
+    attempt([&] {
+        const auto covered = write_picture(options, work.mesh, work.layout, outcome.solution,
+                                           layer ? &outcome.error->by_patch : nullptr, gathered);
+        outcome.lightmaps = files_of(work, options, covered);
+    });
+    attempt([&] {
+        write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout,
+                           outcome.solution, gathered);
+    });
+    attempt([&] {
+        if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
+    });
+    if (fault) std::rethrow_exception(fault);
+}
 
 /// What `outcome` was solved with, for who reads of it.
 void take_accuracy(const Outcome& outcome, SolverSettings& settings) {
@@ -356,44 +392,6 @@ bool split_where_light_varies(Work& work, const Solving& solving, const SolveOpt
         work.memory = checked_memory(work, options, solving.device.summary());
     }
     return true;
-}
-
-std::vector<LightmapFile> files_of(const Work& work, const SolveOptions& options,
-                                   const std::vector<std::size_t>& covered) {
-    if (!options.report) return {};
-    std::vector<LightmapFile> files;
-    for (auto& contents : atlas_contents(work.scene, work.mesh, work.layout)) {
-        const auto atlas = static_cast<std::uint32_t>(files.size());
-        files.push_back({atlas_file(options.output, atlas), std::move(contents), covered[atlas]});
-    }
-    return files;
-}
-
-/// Throws what the first that cannot be written throws, once all were tried.
-void write_results(const Work& work, const SolveOptions& options, Outcome& outcome) {
-    std::exception_ptr fault;
-    const auto attempt = [&](const auto& write) {
-        try {
-            write();
-        } catch (const std::exception&) {
-            if (!fault) fault = std::current_exception();
-        }
-    };
-    const bool layer = options.estimate_error && outcome.error;
-    const auto* const gathered = outcome.gathered ? &*outcome.gathered : nullptr;
-    attempt([&] {
-        const auto covered = write_picture(options, work.mesh, work.layout, outcome.solution,
-                                           layer ? &outcome.error->by_patch : nullptr, gathered);
-        outcome.lightmaps = files_of(work, options, covered);
-    });
-    attempt([&] {
-        write_solved_scene(options, work.scene, work.cameras, work.mesh, work.layout,
-                           outcome.solution, gathered);
-    });
-    attempt([&] {
-        if (options.faces) write_faces(*options.faces, work.scene, work.mesh, outcome.solution);
-    });
-    if (fault) std::rethrow_exception(fault);
 }
 
 std::optional<GatheredLightmaps> gathered_or_saved(const Solving& solving,

@@ -21,13 +21,7 @@ struct Machine {
 
 /// A GPU has no part of fewer units, and less local memory than some tiles need.
 inline bool has(const mp1map::DeviceSummary& device, const Machine& machine) {
-    if (machine.compute_units != 0 && !device.is_divisible) return false;
-    try {
-        mp1map::fit_pe_array(device, machine.pe_array);
-        return true;
-    } catch (const mp1map::NoSuchDevice&) {
-        return false;
-    }
+    return (machine.compute_units == 0 || device.is_divisible) && takes(device, machine.pe_array);
 }
 
 inline std::string exr_of(const Mesh& mesh, SolverSettings how, const Machine& machine) {

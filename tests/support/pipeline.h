@@ -32,9 +32,9 @@ inline std::ostream& operator<<(std::ostream& out, const Shape& shape) {
     return out << name_of(shape);
 }
 
-inline bool takes(const mp1map::DeviceSummary& device, const Shape& shape) {
+inline bool takes(const mp1map::DeviceSummary& device, const mp1map::PeArrayRequest& request) {
     try {
-        mp1map::fit_pe_array(device, shape.request());
+        mp1map::fit_pe_array(device, request);
         return true;
     } catch (const mp1map::NoSuchDevice&) {
         return false;
@@ -47,7 +47,7 @@ inline const std::vector<Shape>& shapes() {
         const auto device = mp1map::Device::open("").summary();
         std::vector<Shape> all = {{4, 1, 16, 64, 64},  {8, 8, 1, 64, 64},   {16, 16, 4, 64, 64},
                                   {32, 32, 1, 32, 32}, {64, 64, 1, 64, 64}, {2, 3, 8, 48, 33}};
-        std::erase_if(all, [&](const Shape& shape) { return !takes(device, shape); });
+        std::erase_if(all, [&](const Shape& shape) { return !takes(device, shape.request()); });
         return all;
     }();
     return taken;
