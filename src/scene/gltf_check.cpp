@@ -250,18 +250,28 @@ void check_sections(const InputFile& file, const Json& json) {
             if (!value.is_object()) fail(file, path, "is not an object");
         });
     }
+}
+
+/// glTF 2.0, 3.2: a client that knows 2.0 reads any 2.x that does not ask for more by `minVersion`.
+void check_version(const InputFile& file, const Json& json) {
     const auto asset = json.find("asset");
     const bool has_version = asset != json.end() && asset->is_object() &&
                              asset->contains("version") && (*asset)["version"].is_string();
     if (!has_version) fail(file, "asset", "holds no version, this is not glTF 2.0");
     const auto& version = (*asset)["version"].get_ref<const std::string&>();
     if (!version.starts_with("2.")) fail(file, "asset", "glTF version " + in_quotes(version));
+    const auto least = asset->find("minVersion");
+    if (least == asset->end()) return;
+    if (!least->is_string()) fail(file, "asset/minVersion", "is not a string");
+    if (const auto& needed = least->get_ref<const std::string&>(); needed != "2.0")
+        fail(file, "asset/minVersion", "needs glTF version " + in_quotes(needed));
 }
 
 }  // namespace
 
 void check_gltf(const InputFile& file, const Json& json) {
     check_sections(file, json);
+    check_version(file, json);
     check_extensions(file, json);
     check_materials(file, json);
     check_primitives(file, json);
