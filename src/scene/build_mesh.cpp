@@ -70,6 +70,9 @@ class Mesher {
                       : group_coplanar(scene_, faces_, edges, vertices_.positions(), precision_);
         contacts_.emplace(faces_, edges, groups_, vertices_.positions(), precision_);
         add_fronts();
+        if (mesh_.patches.empty())
+            throw InputError(scene_.file + ": no face is wide enough to be cut into patches of " +
+                             number(settings_.patch_size) + " m");
         add_backs();
         look_for_contacts_left();
         forget_lone_shooters();

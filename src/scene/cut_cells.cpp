@@ -9,27 +9,33 @@
 namespace hemirad::meshing {
 namespace {
 
+/// Where a line cuts an edge the vertex may be drawn to one that is near, as welding does; what is
+/// cut next is the edge that was there, or a narrow face would be drawn further onto it line by
+/// line.
+struct CutCorner : Corner {
+    glm::dvec3 place;  ///< not drawn to any other vertex; `at` is that in the plane
+};
+
+using CutOutline = std::vector<CutCorner>;
+
 class CellCutter {
   public:
     CellCutter(const Surface& surface, double precision, VertexWelder& vertices)
         : surface_(surface),
           precision_(precision),
-          splitter_({surface.origin, surface.u_axis, surface.v_axis, surface.normal}, vertices,
-                    NewVertices::welded) {}
+          frame_{surface.origin, surface.u_axis, surface.v_axis, surface.normal},
+          vertices_(vertices) {}
 
     void cut(std::uint32_t face, std::span<const std::uint32_t> piece) {
-        Polygon polygon;
-        for (const std::uint32_t v : piece) polygon.push_back(splitter_.corner(v));
-        cut(face, std::move(polygon));
+        CutOutline outline;
+        for (const std::uint32_t v : piece) outline.push_back(corner(v, vertices_[v]));
+        cut(face, std::move(outline));
     }
 
-    void cut(std::uint32_t face, Polygon polygon) {
-        face_ = face;
-        slice(std::move(polygon), 0, surface_.columns, [&](Polygon strip, std::uint32_t column) {
-            slice(std::move(strip), 1, surface_.rows, [&](Polygon cell, std::uint32_t row) {
-                pieces_.push_back({row * surface_.columns + column, face_, std::move(cell)});
-            });
-        });
+    void cut(std::uint32_t face, const Polygon& polygon) {
+        CutOutline outline;
+        for (const Corner& c : polygon) outline.push_back({c, vertices_[c.vertex]});
+        cut(face, std::move(outline));
     }
 
     std::vector<CellPiece> take() {
@@ -38,9 +44,30 @@ class CellCutter {
     }
 
   private:
+    void cut(std::uint32_t face, CutOutline outline) {
+        slice(std::move(outline), 0, surface_.columns, [&](CutOutline strip, std::uint32_t column) {
+            slice(std::move(strip), 1, surface_.rows,
+                  [&](const CutOutline& rest, std::uint32_t row) {
+                      add(row * surface_.columns + column, face, rest);
+                  });
+        });
+    }
+
+    void add(std::uint32_t cell, std::uint32_t face, const CutOutline& outline) {
+        Polygon polygon;
+        for (const CutCorner& c : outline)
+            polygon.push_back({c.vertex, frame_.project(vertices_[c.vertex])});
+        remove_repeats(polygon);
+        if (!polygon.empty()) pieces_.push_back({cell, face, std::move(polygon)});
+    }
+
+    CutCorner corner(std::uint32_t vertex, const glm::dvec3& place) const {
+        return {{vertex, frame_.project(place)}, place};
+    }
+
     // Cuts along the lines across one axis, lowest first, and hands each slice to `keep`.
     template <class Keep>
-    void slice(Polygon rest, int axis, std::uint32_t count, Keep keep) {
+    void slice(CutOutline rest, int axis, std::uint32_t count, Keep keep) {
         double low = std::numeric_limits<double>::infinity();
         double high = -low;
         for (const Corner& c : rest) {
@@ -52,7 +79,12 @@ class CellCutter {
         auto index = static_cast<std::uint32_t>(std::clamp(first, 0.0, count - 1.0));
         for (; index + 1 < count && (index + 1) * size < high - precision_; ++index) {
             const Line line{axis == 0 ? glm::dvec2(1, 0) : glm::dvec2(0, 1), (index + 1) * size};
-            auto [below, above] = splitter_.split(rest, line, precision_);
+            auto [below, above] =
+                split(rest, line, precision_,
+                      [&](const CutCorner& a, const CutCorner& b, double fraction) {
+                          const glm::dvec3 place = a.place + fraction * (b.place - a.place);
+                          return corner(vertices_.add(place), place);
+                      });
             if (!below.empty()) keep(std::move(below), index);
             rest = std::move(above);
         }
@@ -61,8 +93,8 @@ class CellCutter {
 
     const Surface& surface_;
     double precision_;
-    PolygonSplitter splitter_;
-    std::uint32_t face_ = 0;
+    Frame frame_;
+    VertexWelder& vertices_;
     std::vector<CellPiece> pieces_;
 };
 

@@ -93,7 +93,7 @@ class Partition {
             const auto next = longest(reaching);
             const Contact contact = next->whole;
             reaching.erase(next);
-            Halves halves = splitter_.split(polygon, line_of(contact), slack_);
+            Halves<Polygon> halves = splitter_.split(polygon, line_of(contact), slack_);
             if (is_thin(halves.below) || is_thin(halves.above)) continue;
             std::vector<Contact> others;
             for (const Reaching& other : reaching) others.push_back(other.whole);

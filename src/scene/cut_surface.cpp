@@ -71,7 +71,7 @@ class SurfaceCutter {
           vertices_(vertices),
           splitter_({grids_.patches.origin, grids_.patches.u_axis, grids_.patches.v_axis,
                      grids_.patches.normal},
-                    vertices, NewVertices::on_edges),
+                    vertices),
           slack_(contact_slack(grids_.patches, precision)),
           contacts_(std::move(grids_.contacts), grids_.patches, slack_),
           cut_{grids_.elements.back(), {}, {}, {}} {}

@@ -19,35 +19,61 @@ struct Line {
 };
 
 /// On either side of a line; empty where nothing reaches there.
+template <class Outline>
 struct Halves {
-    Polygon below, above;
+    Outline below, above;
 };
 
-/// Whether a new vertex may be drawn to any that is near, as welding does, or stays on the edge
-/// that it divides, to which neighbours that are not cut have no vertex.
-enum class NewVertices { welded, on_edges };
+/// Sutherland and Hodgman (1974), both sides at once. A corner within `slack` of the line counts as
+/// on it and stays where it is, so nothing is moved and no sliver arises beside a line. `cross`
+/// gives the corner where the edge from one corner to another meets the line.
+template <class Outline, class Cross>
+Halves<Outline> split(const Outline& outline, const Line& line, double slack, Cross cross) {
+    const auto side = [&](const Corner& c) {
+        const double beyond = line.along_normal(c) - line.offset;
+        return beyond > slack ? 1 : beyond < -slack ? -1 : 0;
+    };
+    Halves<Outline> halves;
+    bool reaches_below = false, reaches_above = false;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const auto& a = outline[i];
+        const auto& b = outline[(i + 1) % outline.size()];
+        const int side_a = side(a);
+        if (side_a <= 0) halves.below.push_back(a);
+        if (side_a >= 0) halves.above.push_back(a);
+        if (side_a < 0) reaches_below = true;
+        if (side_a > 0) reaches_above = true;
+        if (side_a * side(b) >= 0) continue;
+        const double from_a = line.along_normal(a);
+        const double fraction = (line.offset - from_a) / (line.along_normal(b) - from_a);
+        const auto crossing = cross(a, b, fraction);
+        halves.below.push_back(crossing);
+        halves.above.push_back(crossing);
+    }
+    if (!reaches_below) halves.below.clear();
+    if (!reaches_above) halves.above.clear();
+    return halves;
+}
 
-/// Cuts polygons of one plane in two. New vertices go to the welder.
-///
-/// A vertex within `slack` of a line counts as on it and stays where it is, so nothing is moved and
-/// no sliver arises beside a line. Both polygons of an edge that crosses a line get the same vertex
-/// there: the second one's differs by rounding only and is welded.
+/// Once each of the vertices that follow one another; nothing where fewer than three are left.
+void remove_repeats(Polygon& polygon);
+
+/// Cuts polygons of one plane in two. New vertices go to the welder, but are not drawn to what is
+/// near: they stay on the edge that they divide, to which neighbours that are not cut have no
+/// vertex. Both polygons of an edge that crosses a line get the same vertex there: the second one's
+/// differs by rounding only.
 class PolygonSplitter {
   public:
-    PolygonSplitter(const Frame& frame, VertexWelder& vertices, NewVertices new_vertices)
-        : frame_(frame), vertices_(vertices), new_vertices_(new_vertices) {}
+    PolygonSplitter(const Frame& frame, VertexWelder& vertices)
+        : frame_(frame), vertices_(vertices) {}
 
-    Corner corner(std::uint32_t vertex) const {
-        return {vertex, frame_.project(vertices_[vertex])};
-    }
-    Halves split(const Polygon& polygon, const Line& line, double slack);
+    Halves<Polygon> split(const Polygon& polygon, const Line& line, double slack);
 
   private:
-    Corner cross(const Corner& a, const Corner& b, const Line& line);
+    Corner cross(const Corner& a, const Corner& b, double fraction);
 
     Frame frame_;
     VertexWelder& vertices_;
-    NewVertices new_vertices_;
 };
 
 }  // namespace hemirad::meshing

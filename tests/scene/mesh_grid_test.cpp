@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "errors.h"
 #include "scene/scenes_by_hand.h"
 #include "support/seconds_since.h"
 
@@ -253,6 +255,24 @@ TEST(Grid, VertexBesideAGridLineCountsAsOnIt) {
 }
 
 // Every directed edge of a patch meets its reverse, or lies on edges of others end to end.
+// Where they are narrower than twice the weld, nothing is left: of a triangle's tips, a thousandth.
+TEST(Grid, NarrowFaceKeepsItsAreaHoweverManyLinesCutIt) {
+    Scene scene = scene_of({{{0, 0, 0}, {0, 0.75, 0x1p-16}, {0, 1, 0}}});
+    scene.quantum = 0x1p-24;  // the weld is 2^-22, a 64th of the height
+    for (const double size : {0.3, 0.01, 0.002, 0.0005, 0.0001}) {
+        const Mesh mesh = build_mesh(scene, {.patch_size = size, .backfaces = Backfaces::cull});
+        EXPECT_NEAR(total_area(mesh) / 0x1p-17, 1, 2e-3) << size;
+    }
+}
+
+TEST(Grid, OfWhichNothingIsLeftIsAnInputError) {
+    Scene scene = scene_of({{{0, 0, 0}, {0, 0.75, 2.1 * 0x1p-22}, {0, 1, 0}}});
+    scene.quantum = 0x1p-24;
+    EXPECT_THAT([&] { build_mesh(scene, {.patch_size = 0.1}); },
+                testing::ThrowsMessage<InputError>(
+                    "hand.obj: no face is wide enough to be cut into patches of 0.10 m"));
+}
+
 TEST(Grid, ClosedBoxIsWatertight) {
     const Mesh mesh = mesh_of(room({0, 0, 0}, {1, 2, 3}), 0.25);
 
