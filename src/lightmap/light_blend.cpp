@@ -23,6 +23,13 @@ double longest_cell(const Surface& surface) {
     return std::max(surface.cell_size.x, surface.cell_size.y);
 }
 
+/// Of its largest patch.
+glm::dvec2 largest_cell(const Surface& surface) {
+    const auto& scales = surface.scale_of_patch;
+    const auto largest = std::ranges::max_element(scales);
+    return surface.cell_size * double(1u << (largest == scales.end() ? 0 : *largest));
+}
+
 glm::dvec3 world_of(const Surface& surface, const glm::dvec2& place) {
     return surface.origin + place.x * surface.u_axis + place.y * surface.v_axis;
 }
@@ -50,6 +57,21 @@ Box reach_of(const Surface& surface) {
     box.low -= longest_cell(surface);
     box.high += longest_cell(surface);
     return box;
+}
+
+/// Whether both, a cell about each, share a place as the axes of the first see it.
+bool may_share(const Surface& surface, const Surface& other) {
+    const glm::dvec2 about = largest_cell(other), own = largest_cell(surface);
+    const glm::dvec2 end = extent_of(other) + about;
+    glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const double s : {-about.x, end.x})
+        for (const double t : {-about.y, end.y}) {
+            const glm::dvec2 corner = place_on(surface, world_of(other, {s, t}));
+            low = glm::min(low, corner);
+            high = glm::max(high, corner);
+        }
+    return glm::all(glm::lessThanEqual(low, extent_of(surface) + own)) &&
+           glm::all(glm::greaterThanEqual(high, -own));
 }
 
 bool touch(const Box& a, const Box& b) {
@@ -126,7 +148,8 @@ void LightBlend::find_full_cells(std::uint32_t index) {
 bool LightBlend::may_meet(std::uint32_t a, std::uint32_t b) const {
     const Surface &one = mesh_.surfaces[a], &other = mesh_.surfaces[b];
     return glm::dot(one.normal, other.normal) > 0 &&
-           (across_ == Across::all_materials || one.material == other.material);
+           (across_ == Across::all_materials || one.material == other.material) &&
+           may_share(one, other) && may_share(other, one);
 }
 
 std::uint32_t LightBlend::scale_of(std::uint32_t patch) const {
