@@ -120,12 +120,23 @@ class Mesher {
                              " m is too small: there would be more than 100 million " + plural);
     }
 
-    void flatten_faces() {
-        vertex_of_position_.reserve(scene_.positions.size());
-        for (const auto& position : scene_.positions) {
-            vertex_of_position_.push_back(vertices_.add(position));
-            if (vertices_[vertex_of_position_.back()] != position) ++mesh_.input.welded;
+    // Those of no face may lie beyond what the weld of the others can number.
+    void weld_positions() {
+        constexpr std::uint32_t kUnused = 0xffffffffu;
+        std::vector<bool> is_used(scene_.positions.size());
+        for (const Face& face : scene_.faces)
+            for (const std::uint32_t position : face.vertices) is_used[position] = true;
+        vertex_of_position_.assign(scene_.positions.size(), kUnused);
+        for (std::size_t i = 0; i < scene_.positions.size(); ++i) {
+            if (!is_used[i]) continue;
+            const glm::dvec3& position = scene_.positions[i];
+            vertex_of_position_[i] = vertices_.add(position);
+            if (vertices_[vertex_of_position_[i]] != position) ++mesh_.input.welded;
         }
+    }
+
+    void flatten_faces() {
+        weld_positions();
         const Outlines outlines = outline_faces(scene_.faces, vertex_of_position_);
         mesh_.input.moved = move_onto_edges(outlines, precision_, vertices_);
         faces_ = flatten(scene_, outlines, vertices_.positions(), precision_);

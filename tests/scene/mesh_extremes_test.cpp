@@ -111,6 +111,18 @@ TEST(Weld, IgnoresPositionsThatNoFaceUses) {
     EXPECT_EQ(mesh_of(scene, 10).weld, weld);
 }
 
+// A small face beside a position as far away as files may say.
+TEST(Weld, DrawsNothingToPositionsThatNoFaceUses) {
+    Scene scene = scene_of({rectangle(0, 0, 1e-6, 1e-6)});
+    scene.positions.insert(scene.positions.begin(), {{1e-13, 0, 0}, {1e60, 0, 0}});
+    for (auto& v : scene.faces[0].vertices) v += 2;
+    const Mesh mesh = mesh_of(scene, 10);
+
+    EXPECT_GT(mesh.weld, 1e-13);
+    EXPECT_EQ(mesh.input.welded, 0u);
+    EXPECT_EQ(mesh.vertices.front(), glm::dvec3(0));
+}
+
 TEST(Weld, CanBeChosen) {
     auto right = rectangle(1.001, 0, 2, 1);
     const Scene scene = scene_of({rectangle(0, 0, 1, 1), right});
