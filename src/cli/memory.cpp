@@ -93,9 +93,11 @@ std::uint64_t channel_count(const Mesh& mesh, const SolveOptions& options) {
            3 * (std::uint64_t{layers.normal} + layers.position) + options.solver.count_shots;
 }
 
-std::uint32_t resolution_of(const SolveOptions& options) {
-    return options.target_error ? accuracy_at(first_step(*options.target_error)).resolution
-                                : options.solver.resolution;
+/// What a target leaves open is as in the first solve that is compared with another one.
+SolveOptions with_accuracy(SolveOptions options) {
+    if (options.target_error)
+        set_accuracy(options.solver, accuracy_at(first_step(*options.target_error)));
+    return options;
 }
 
 /// What is touched of the memory for rows: they are made as shooters come, and a solve that
@@ -120,12 +122,11 @@ MemoryParts on_device(const Mesh& mesh, const SolveOptions& options,
                       const mp1map::DeviceSummary& device) {
     const auto& solver = options.solver;
     const std::uint64_t patches = mesh.patches.size(), shooters = mesh.shooter_count();
-    const std::uint32_t resolution = resolution_of(options);
-    const auto salvo = usable_salvo(solver.salvo, shooters, patches, resolution);
+    const auto salvo = usable_salvo(solver.salvo, shooters, patches, solver.resolution);
     const auto with_rows = [&](std::uint64_t row_bytes) {
         return estimated_device_bytes(
             static_cast<std::uint32_t>(patches), static_cast<std::uint32_t>(shooters),
-            corner_count_of(mesh), plan_bands(mesh, solver.parts).solved.size(), resolution,
+            corner_count_of(mesh), plan_bands(mesh, solver.parts).solved.size(), solver.resolution,
             solver.form_factor, row_bytes, mp1map::fit_pe_array(device, solver.pe_array), salvo,
             solver.count_shots);
     };
@@ -347,8 +348,9 @@ std::uint64_t total(const MemoryParts& parts) {
 }
 
 MemoryEstimate estimate_memory(const Mesh& mesh, const ChartLayout& layout,
-                               const SolveOptions& options, const mp1map::DeviceSummary& device,
+                               const SolveOptions& asked, const mp1map::DeviceSummary& device,
                                std::uint64_t prepare_bytes) {
+    const SolveOptions options = with_accuracy(asked);
     MemoryEstimate estimate;
     const MemoryParts read = {{"reading the scene and making its mesh", prepare_bytes,
                                "raise --patch-size, or make the scene or its textures smaller"}};

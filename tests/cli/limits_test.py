@@ -137,6 +137,11 @@ class Memory(LimitsTest):
         self.assertGreater(told[2], told[0])
         self.assertFalse((self.folder / "a.png").exists())
 
+    def test_a_target_reckons_with_the_near_pairs_of_its_solves(self):
+        told = self.run_hemirad("info", SCENES / "cornell.gltf", "--target-error", "0.001",
+                                "--row-memory", "0")
+        self.assertRegex(told.stdout, r"\nmemory .*pairs of near patches [0-9.]+ MiB")
+
     def test_what_fits_the_limit_is_solved(self):
         self.report_of("cornell.gltf", "--quality", "draft", "--max-shots", "1", "--memory-limit",
                        "1.5G")
