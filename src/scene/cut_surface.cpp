@@ -56,8 +56,8 @@ void share_out(const CellPiece& piece, std::span<const Polygon> elements, bool i
                std::uint32_t first_patch, std::vector<Fragment>& fragments) {
     const auto shares = shares_of(piece, elements, is_alone);
     const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
-    if (total <= 0) return;
     const double whole = area(piece.polygon);
+    if (total <= 0 || whole <= 0) return;
     for (std::uint32_t i = 0; i < elements.size(); ++i)
         if (shares[i] > 0)
             fragments.push_back({piece.face, first_patch + i, whole * shares[i] / total});

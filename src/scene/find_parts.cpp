@@ -125,12 +125,41 @@ std::vector<bool> find_open_lines(std::span<const Edge> edges, std::span<const E
     return open;
 }
 
+// Within a line, edges were compared with the next: a round rim that bends little from each to the
+// next is none. Of a line, all vertices lie near that through two far apart.
+void open_bent_lines(std::span<const Edge> edges, const Vertices& vertices, double precision,
+                     DisjointSets& lines, std::vector<bool>& open) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> on_lines;
+    for (std::uint32_t e = 0; e < edges.size(); ++e)
+        for (const std::uint32_t vertex : {edges[e].low(), edges[e].high()})
+            on_lines.emplace_back(lines.find(e), vertex);
+    std::ranges::sort(on_lines);
+    for (std::size_t begin = 0, end = 0; begin < on_lines.size(); begin = end) {
+        const std::uint32_t line = on_lines[begin].first;
+        while (end < on_lines.size() && on_lines[end].first == line) ++end;
+        const auto own = std::span(on_lines).subspan(begin, end - begin);
+        const auto farthest = [&](const glm::dvec3& from) {
+            return vertices[std::ranges::max_element(own, {}, [&](const auto& at) {
+                                return glm::distance(vertices[at.second], from);
+                            })->second];
+        };
+        const glm::dvec3 from = farthest(vertices[own.front().second]);
+        const glm::dvec3 along = farthest(from) - from;
+        if (std::ranges::any_of(own, [&](const auto& at) {
+                const double area = glm::length(glm::cross(vertices[at.second] - from, along));
+                return area > 2 * precision * glm::length(along);
+            }))
+            open[line] = true;
+    }
+}
+
 // Returns the edges that stay open; joins the flats along the others.
 std::vector<Edge> join_over_t_junctions(std::span<const Edge> edges, const Vertices& vertices,
                                         double precision, DisjointSets& flats) {
     const auto ends = ends_of(edges);
     DisjointSets lines = join_on_lines(edges, ends, vertices, precision);
-    const auto open_lines = find_open_lines(edges, ends, lines);
+    auto open_lines = find_open_lines(edges, ends, lines);
+    open_bent_lines(edges, vertices, precision, lines, open_lines);
     std::vector<Edge> open;
     for (std::uint32_t e = 0; e < edges.size(); ++e) {
         const std::uint32_t line = lines.find(e);

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "scene/scenes_by_hand.h"
 
 namespace hemirad::mesh_parts_test {
@@ -106,6 +109,22 @@ TEST(Parts, TJunctionWithAGapStaysOpen) {
     faces.push_back({at(0, 1, 0.6), wall[1], wall[2], at(3, 2, 0.6)});
 
     EXPECT_FALSE(mesh_of(faces, 10).closed);
+}
+
+// From each edge to the next it bends by less than coordinates are precise to.
+TEST(Parts, ARoundRimIsOpenHoweverFineItIs) {
+    constexpr int kCorners = 64;
+    std::vector<glm::dvec3> disc;
+    for (int i = 0; i < kCorners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kCorners;
+        disc.emplace_back(0.25 * std::cos(angle), 0.25 * std::sin(angle), 0);
+    }
+    Scene scene = scene_of({disc});
+    scene.quantum = 5e-4;
+    const Mesh mesh = mesh_of(scene, 10, Backfaces::automatic);
+
+    EXPECT_FALSE(mesh.parts[0].closed);
+    EXPECT_GT(back_count(mesh), 0u);
 }
 
 TEST(Parts, DoubledTellsOfDoubleSidedMaterials) {
