@@ -229,7 +229,7 @@ class Soak(LimitsTest):
         with subprocess.Popen(command, cwd=self.folder) as process:
             while process.poll() is None:
                 samples.append(resident_bytes(process.pid))
-                time.sleep(0.5)
+                time.sleep(0.1)
         self.assertEqual(0, process.returncode)
         report = json.loads((self.folder / "a.json").read_text())
         self.assertGreaterEqual(report["shots"], 1_000_000)
