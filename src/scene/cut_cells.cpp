@@ -47,8 +47,8 @@ class CellCutter {
     void cut(std::uint32_t face, CutOutline outline) {
         slice(std::move(outline), 0, surface_.columns, [&](CutOutline strip, std::uint32_t column) {
             slice(std::move(strip), 1, surface_.rows,
-                  [&](const CutOutline& rest, std::uint32_t row) {
-                      add(row * surface_.columns + column, face, rest);
+                  [&](const CutOutline& cell, std::uint32_t row) {
+                      add(row * surface_.columns + column, face, cell);
                   });
         });
     }

@@ -254,7 +254,6 @@ TEST(Grid, VertexBesideAGridLineCountsAsOnIt) {
     EXPECT_DOUBLE_EQ(total_area(mesh), 2);
 }
 
-// Every directed edge of a patch meets its reverse, or lies on edges of others end to end.
 // Where they are narrower than twice the weld, nothing is left: of a triangle's tips, a thousandth.
 TEST(Grid, NarrowFaceKeepsItsAreaHoweverManyLinesCutIt) {
     Scene scene = scene_of({{{0, 0, 0}, {0, 0.75, 0x1p-16}, {0, 1, 0}}});
@@ -273,6 +272,7 @@ TEST(Grid, OfWhichNothingIsLeftIsAnInputError) {
                     "hand.obj: no face is wide enough to be cut into patches of 0.10 m"));
 }
 
+// Every directed edge of a patch meets its reverse, or lies on edges of others end to end.
 TEST(Grid, ClosedBoxIsWatertight) {
     const Mesh mesh = mesh_of(room({0, 0, 0}, {1, 2, 3}), 0.25);
 
